@@ -270,7 +270,7 @@ Report judge(const Domain& domain, const Domain& given, const Mesh& mesh,
     if (is_well_formed && !domain.arcs.empty()) {
       arcs = find_arc_chains(domain, mesh, listed);
       judge_arc_chords(*arcs, mesh, listed,
-                       std::min(kMostTurn, 360 / requirements.points_per_circle), findings);
+                       std::min(kMaxTurn, 360 / requirements.points_per_circle), findings);
       judge_arc_bulges(*arcs, mesh, listed, findings);
     }
     const Domain& straight = arcs ? arcs->straight.domain : domain;

@@ -31,7 +31,7 @@ constexpr double kBytesPerPoint = 300;
 // Of the lattices of a size that varies (size/lattice/lattice_map.h): one for some 80 triangles
 // where they change within a few rows, and no more than about this in all.
 constexpr double kBytesOfLattices = 5;  // a triangle
-constexpr double kMostBytesOfLattices = 8e6;
+constexpr double kMaxBytesOfLattices = 8e6;
 // Any run takes this for tables and buffers.
 constexpr double kBytesPerRun = 1e6;
 // Over triangles_per_bound, which is what comes out if the size is the same everywhere: where it
@@ -49,7 +49,7 @@ constexpr double kBytesOfStrip = 420;  // times the root of triangles of the mes
 constexpr double kBytesPerLeaf = 2700;
 // Full ones. With fewer, nearly all leaves may have begun before much is sent, if a thread stands
 // still for a while.
-constexpr double kFewestLeaves = 128;
+constexpr double kMinLeaves = 128;
 // The strip of a mesh of up to about so many leaves is this much larger where the size varies: they
 // are done in the order of the shortest chains (parallel/leaf_order.h), not along the sweep.
 constexpr double kFewLeaves = 256;
@@ -168,7 +168,7 @@ double bytes_of_mesh(double triangles, double of_leaf, bool may_stream, bool var
   const double whole = kBytesPerTriangle * triangles;
   const double waiting = kBytesOfWaiting * std::min(triangles, full_leaves_waiting() * of_leaf);
   const double leaves = triangles / of_leaf;
-  if (!may_stream || leaves < kFewestLeaves) return whole + waiting;
+  if (!may_stream || leaves < kMinLeaves) return whole + waiting;
   const double strip = kBytesOfStrip * std::sqrt(triangles * of_leaf) *
                            (varies && leaves < kFewLeaves ? kMoreOfFewLeaves : 1) +
                        kBytesPerLeaf * leaves;
@@ -176,7 +176,7 @@ double bytes_of_mesh(double triangles, double of_leaf, bool may_stream, bool var
 }
 
 double bytes_of_lattices(const BySize& by_size) {
-  return by_size.varies ? std::min(kBytesOfLattices * by_size.triangles, kMostBytesOfLattices) : 0;
+  return by_size.varies ? std::min(kBytesOfLattices * by_size.triangles, kMaxBytesOfLattices) : 0;
 }
 
 // Numbers that are not finite become `most`.

@@ -73,11 +73,11 @@ Result<Mesh> mesh(const MeshRequest& request) {
 // defaults, because the system clears 20 pages for it instead of 320.
 void keep_memory_at_most(std::uint64_t bytes) {
   constexpr std::uint64_t kShare = 128;
-  constexpr std::uint64_t kMostOfHeap = std::uint64_t{16} << 20;
-  constexpr std::uint64_t kMostInHeap = std::uint64_t{4} << 20;  // larger vectors are mapped alone
+  constexpr std::uint64_t kMaxOfHeap = std::uint64_t{16} << 20;
+  constexpr std::uint64_t kMaxInHeap = std::uint64_t{4} << 20;  // larger vectors are mapped alone
   ReservedMemory::keep_at_most(bytes);
-  mallopt(M_TRIM_THRESHOLD, static_cast<int>(std::min(bytes / kShare, kMostOfHeap)));
-  mallopt(M_MMAP_THRESHOLD, static_cast<int>(std::min(bytes / kShare, kMostInHeap)));
+  mallopt(M_TRIM_THRESHOLD, static_cast<int>(std::min(bytes / kShare, kMaxOfHeap)));
+  mallopt(M_MMAP_THRESHOLD, static_cast<int>(std::min(bytes / kShare, kMaxInHeap)));
 }
 
 }  // namespace weft

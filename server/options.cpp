@@ -316,7 +316,7 @@ void add_limits(Flags& flags, Options& options, Given& given) {
   for (const CountLimit& row : kCountLimits)
     flags.count(flag_name(row.name), limits.*row.limit, std::string(row.about));
   flags.value("--max-triangles", limits.max_triangles, "N", "Maximum triangles per mesh")
-      ->check(CLI::Range(std::uint64_t{1}, kMostTriangles).description(""));
+      ->check(CLI::Range(std::uint64_t{1}, kMaxTriangles).description(""));
   given.max_bytes = flags.bytes(
       "--max-bytes", limits.max_bytes,
       "Maximum memory of the engine per run; --jobs runs of that size must fit into what --memory "
@@ -384,15 +384,15 @@ void settle_memory(const Given& given, Options& options) {
   if (given.cache_bytes->count() == 0)
     service.cache_bytes = std::min(std::uint64_t{64} << 20, memory / 32);
   const MemoryPlan plan = plan_memory(options.server);
-  if (plan.runs < kLeastBytesOfRuns)
+  if (plan.runs < kMinBytesOfRuns)
     throw CLI::ValidationError(
         "--memory", fmt::format("{} bytes leave {} for runs, beside {} for messages, {} for "
                                 "--cache-bytes and {} for the process; runs need at least {}",
                                 memory, plan.runs, plan.received, service.cache_bytes,
-                                kBytesOfProcess + plan.kept, kLeastBytesOfRuns));
+                                kBytesOfProcess + plan.kept, kMinBytesOfRuns));
   // At least so many, so that a small request need not wait for the end of one huge run.
-  constexpr std::uint32_t kFewestRuns = 4;
-  service.jobs = given.jobs != 0 ? given.jobs : std::max(service.threads, kFewestRuns);
+  constexpr std::uint32_t kMinRuns = 4;
+  service.jobs = given.jobs != 0 ? given.jobs : std::max(service.threads, kMinRuns);
   if (given.max_bytes->count() == 0) {
     max_bytes = plan.runs / service.jobs;
   } else if (given.jobs == 0) {

@@ -52,7 +52,7 @@ struct MemoryPlan {
 // 29 MiB.
 inline constexpr std::uint64_t kBytesOfProcess = std::uint64_t{32} << 20;
 // The least for runs: one that is light.
-inline constexpr std::uint64_t kLeastBytesOfRuns = std::uint64_t{32} << 20;
+inline constexpr std::uint64_t kMinBytesOfRuns = std::uint64_t{32} << 20;
 
 // Its `runs` are 0 if there is not enough for all else.
 MemoryPlan plan_memory(const ServerOptions& options);

@@ -225,9 +225,8 @@ class ChainFinder {
     ArcChains::Chord chord{arc.segment,     step.edge,     step.from, step.to,
                            step.from_angle, step.to_angle, {}};
     const Vec2 p = mesh_.vertices[step.from], q = mesh_.vertices[step.to];
-    constexpr double kMostWithHull = 1.1;  // radians; longer edges are wrong
-    const double height =
-        chord.turn() < kMostWithHull ? CircularArc::height(p, q, chord.turn()) : 0;
+    constexpr double kMaxWithHull = 1.1;  // radians; longer edges are wrong
+    const double height = chord.turn() < kMaxWithHull ? CircularArc::height(p, q, chord.turn()) : 0;
     if (height > 2 * tolerance) chord.hull = Hull{p, q, curve(arc).side(p, q, height - tolerance)};
     result_.chords.push_back(chord);
   }

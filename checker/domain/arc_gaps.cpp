@@ -12,7 +12,7 @@
 namespace weft::check {
 namespace {
 
-constexpr double kMostTurn = 5;      // degrees
+constexpr double kMaxTurn = 5;       // degrees
 constexpr std::size_t kRounds = 12;  // each of which halves a turn
 
 // Adds a piece, cut into equal ones.
@@ -44,11 +44,11 @@ using Ends = std::array<Vec2, 2>;
 
 // What a gap must not reach: the chord, and, if it is the mesh's, the sides of its hull.
 void add_lines(const ArcPiece& piece, const std::vector<Vec2>& points, std::vector<Ends>& lines) {
-  constexpr double kMostWithHull = 1.1;  // radians; longer edges are wrong
+  constexpr double kMaxWithHull = 1.1;  // radians; longer edges are wrong
   const Vec2 p = points[piece.from], q = points[piece.to];
   const double turn = piece.to_angle - piece.from_angle;
   lines.push_back({p, q});
-  if (piece.is_gap || turn > kMostWithHull) return;
+  if (piece.is_gap || turn > kMaxWithHull) return;
   const Vec2 corner = piece.curve->side(p, q, CircularArc::height(p, q, turn));
   lines.insert(lines.end(), {{p, corner}, {corner, q}});
 }
@@ -95,7 +95,7 @@ void cut_gaps(const Domain& domain, double least, std::vector<Vec2>& points,
   std::vector<ArcPiece> before;
   std::swap(before, pieces);
   for (const ArcPiece& piece : before)
-    add_pieces(piece, piece.is_gap ? pieces_of(piece.to_angle - piece.from_angle, kMostTurn) : 1,
+    add_pieces(piece, piece.is_gap ? pieces_of(piece.to_angle - piece.from_angle, kMaxTurn) : 1,
                points, pieces);
   for (std::size_t round = 0; round < kRounds; ++round) {
     std::vector<Ends> lines = fixed;

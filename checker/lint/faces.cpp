@@ -82,8 +82,8 @@ class FaceJudge {
       for (const std::uint32_t a : context_.covering[f])
         if (!domain.areas[a].is_hole) areas.push_back(a);
       for (const std::uint32_t a : areas) ++faces[a];
-      constexpr std::size_t kMostStacked = 64;  // so that a pile of polygons takes linear time
-      if (areas.size() > kMostStacked) areas.resize(kMostStacked);
+      constexpr std::size_t kMaxStacked = 64;  // so that a pile of polygons takes linear time
+      if (areas.size() > kMaxStacked) areas.resize(kMaxStacked);
       const double area = arrangement_.faces()[f].area;
       for (std::size_t i = 0; i < areas.size(); ++i)
         for (std::size_t j = i + 1; j < areas.size(); ++j) {

@@ -57,10 +57,10 @@ struct Fault {
 // Counts all faults, and keeps the first of each kind.
 class Faults {
  public:
-  static constexpr std::uint64_t kMostKept = 1000;  // of a kind
+  static constexpr std::uint64_t kMaxKept = 1000;  // of a kind
 
   void add(Fault fault) {
-    if (totals_[static_cast<std::size_t>(fault.kind)]++ < kMostKept)
+    if (totals_[static_cast<std::size_t>(fault.kind)]++ < kMaxKept)
       kept_.push_back(std::move(fault));
   }
   std::uint64_t total(FaultKind kind) const { return totals_[static_cast<std::size_t>(kind)]; }

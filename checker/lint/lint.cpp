@@ -46,7 +46,7 @@ Joints find_joints(const SnappedDomain& snapped, const BoxTree& tree) {
       if (d > snapped.merging || !is_beside(p, a, b) || orientation(a, b, p) == 0) return;
       if (d <= snapped.rounding) out.touches.push_back({s, place});
       if (const auto q = across(p, a, b, d)) out.links.push_back({p, *q});
-      out.complete = out.links.size() <= kMostMeetings;
+      out.complete = out.links.size() <= kMaxMeetings;
     });
     if (!out.complete) break;
   }
@@ -62,7 +62,7 @@ void arrange(LintContext& context, Joints joints) {
     points.insert(points.end(), link.begin(), link.end());
     segments.push_back({first, first + 1});
   }
-  const Contacts contacts = find_contacts(points, segments, kMostMeetings);
+  const Contacts contacts = find_contacts(points, segments, kMaxMeetings);
   context.touches = std::move(joints.touches);
   for (const auto [segment, point] : contacts.touches)
     if (segment < snapped.segments.size() && point < snapped.places.size())

@@ -29,7 +29,7 @@ inline constexpr double kSmallAngleDeg = 1;
 // A face is a sliver if its mean width is below this part of its mean edge.
 inline constexpr double kSliverOfEdge = 1e-3;
 // If segments meet more often, faces and open ends are not looked at.
-inline constexpr std::size_t kMostMeetings = 200'000;
+inline constexpr std::size_t kMaxMeetings = 200'000;
 
 struct LintResult {
   Faults faults;  // by kind, then in the order of the domain

@@ -186,8 +186,7 @@ void judge_arc_crossings(const ArcChains& chains, const BentDomain& bent,
   std::vector<const ArcChains::Chord*> chords;
   std::vector<Box> boxes;
   for (const ArcChains::Chord& chord : chains.chords) {
-    if (!chord.hull || chord.turn() > kMostTurn / kDegreesPerRadian * (1 + kTurnTolerance))
-      continue;
+    if (!chord.hull || chord.turn() > kMaxTurn / kDegreesPerRadian * (1 + kTurnTolerance)) continue;
     const auto& [p, q, corner] = *chord.hull;
     const Vec2 middle{(p.x + q.x) / 2, (p.y + q.y) / 2};
     const double share = std::tan(chord.turn() / 4) / std::tan(chord.turn() / 2);

@@ -14,7 +14,7 @@
 
 namespace weft::check {
 
-inline constexpr double kMostTurn = 60;  // degrees, of an edge
+inline constexpr double kMaxTurn = 60;  // degrees, of an edge
 
 // Each edge of a chain turns by `max_turn` degrees at most. In its hull, between it and the
 // tangents in its ends, which holds the arc itself, there is no vertex, no other listed edge and no

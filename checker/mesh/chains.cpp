@@ -19,7 +19,7 @@ namespace weft::check {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr std::size_t kMostCandidates = 16;  // each pair of which may be the ends of a chain
+constexpr std::size_t kMaxCandidates = 16;  // each pair of which may be the ends of a chain
 
 class ChainJudge {
  public:
@@ -187,13 +187,13 @@ class ChainJudge {
     };
     for (;;) {
       const double distance = std::min(distance_before(), distance_after());
-      const bool is_enough = near.size() >= kMostCandidates && distance > near.back().first;
+      const bool is_enough = near.size() >= kMaxCandidates && distance > near.back().first;
       if (!(distance <= most) || is_enough) break;
       const End& end = distance_before() == distance ? *--before : *after++;
       near.emplace_back(distance, end.vertex);
     }
     std::sort(near.begin(), near.end());
-    near.resize(std::min(near.size(), kMostCandidates));
+    near.resize(std::min(near.size(), kMaxCandidates));
     std::vector<std::uint32_t> vertices;
     for (const auto& [distance, vertex] : near) vertices.push_back(vertex);
     return vertices;
@@ -209,7 +209,7 @@ class ChainJudge {
       return s.segment < segment || (s.segment == segment && s.from_position <= at);
     });
     std::vector<std::uint32_t> vertices;
-    for (std::size_t k = 0; k < kMostCandidates && step != steps_.begin(); ++k) {
+    for (std::size_t k = 0; k < kMaxCandidates && step != steps_.begin(); ++k) {
       --step;
       if (step->segment != segment) break;
       if (step->to_position >= at) vertices.insert(vertices.end(), {step->from, step->to});

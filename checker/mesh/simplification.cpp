@@ -47,8 +47,8 @@ class Judge {
   void judge() {
     for (std::uint32_t s = 0; s < simple_.domain.segments.size(); ++s) judge_segment(s);
     for (std::uint32_t s = 0; s < original_.domain.segments.size(); ++s) judge_beside(s);
-    constexpr std::size_t kMostTriangles = 20'000;
-    const std::size_t step = 1 + mesh_.triangles.size() / kMostTriangles;
+    constexpr std::size_t kMaxTriangles = 20'000;
+    const std::size_t step = 1 + mesh_.triangles.size() / kMaxTriangles;
     for (std::size_t t = 0; t < mesh_.triangles.size(); t += step) {
       const auto [a, b, c] = mesh_.triangles[t];
       const Vec2 p = mesh_.vertices[a], q = mesh_.vertices[b], r = mesh_.vertices[c];
@@ -115,8 +115,8 @@ class Judge {
     const double limit = std::max(finest(from, marker), finest(to, marker));
     if (!(limit < kInfinity)) return;
     const double length = std::hypot(to.x - from.x, to.y - from.y);
-    constexpr double kMostSteps = 1e5;
-    const double steps = std::clamp(std::ceil(8 * length / limit), 2.0, kMostSteps);
+    constexpr double kMaxSteps = 1e5;
+    const double steps = std::clamp(std::ceil(8 * length / limit), 2.0, kMaxSteps);
     for (double i = 0; i <= steps; ++i) {
       const Vec2 p{from.x + i / steps * (to.x - from.x), from.y + i / steps * (to.y - from.y)};
       const Nearest near = nearest(p, kInfinity, [&](std::uint32_t other) {
@@ -193,7 +193,7 @@ class Judge {
     constexpr double kAlone = 1.01;
     return f != 0 && area > kAlone * face.area &&
            face.area - face.perimeter * length / 2 <
-               kMostCutOff * std::sqrt(3.0) / 4 * length * length;
+               kMaxCutOff * std::sqrt(3.0) / 4 * length * length;
   }
 
   // Points that no segment names, and those where segments meet or end, stay.

@@ -16,7 +16,7 @@
 namespace weft::check {
 
 // Equilateral triangles with edges of the largest `finest` on the border.
-inline constexpr double kMostCutOff = 100;
+inline constexpr double kMaxCutOff = 100;
 
 // A domain with its faces.
 struct FacedDomain {
@@ -32,7 +32,7 @@ struct FacedDomain {
 //     not in the other, or has another region. The points are beside the original's segments, on
 //     both sides, and in the triangles of the mesh: 20,000 at most. A water behind a channel that
 //     was closed need not be meshed: what of its face, in the lines of both domains together, is
-//     more than `finest` / 2 from its border must be smaller than kMostCutOff triangles, and the
+//     more than `finest` / 2 from its border must be smaller than kMaxCutOff triangles, and the
 //     original's face must have had more than this;
 //   - a point of the original inside the domain is no vertex of the mesh, though no segment names
 //     it; or two or more segments end there, of several markers, or not just two do.

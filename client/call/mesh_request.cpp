@@ -150,12 +150,12 @@ Result<RequestOptions> with_size(const RequestOptions& given, const Domain& doma
 
 Result<void> check_sendable(const Domain& domain) {
   // A message of gRPC ends at 2 GiB.
-  constexpr std::size_t kMostPoints = std::size_t{1} << 26;
-  if (domain.points.size() <= kMostPoints && domain.segments.size() <= kMostPoints) return {};
+  constexpr std::size_t kMaxPoints = std::size_t{1} << 26;
+  if (domain.points.size() <= kMaxPoints && domain.segments.size() <= kMaxPoints) return {};
   return fail(ExitCode::kUnreadableInput,
               "the domain has " + std::to_string(domain.points.size()) + " points and " +
                   std::to_string(domain.segments.size()) + " segments, a request takes " +
-                  std::to_string(kMostPoints) + " of each");
+                  std::to_string(kMaxPoints) + " of each");
 }
 
 Names names_of(const v1::Domain& domain) {

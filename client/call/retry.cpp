@@ -33,8 +33,8 @@ bool Retry::again(const grpc::Status& status) {
   const auto asked = wait_asked(status);
   if (!asked && status.error_code() != grpc::StatusCode::UNAVAILABLE) return false;
 
-  constexpr std::uint32_t kMostDoublings = 20;
-  const auto doubled = options_.first_wait * (1 << std::min(failures_, kMostDoublings));
+  constexpr std::uint32_t kMaxDoublings = 20;
+  const auto doubled = options_.first_wait * (1 << std::min(failures_, kMaxDoublings));
   const milliseconds about = std::max(
       std::min<milliseconds>(doubled, options_.longest_wait),
       std::clamp(asked.value_or(milliseconds(0)), milliseconds(0), options_.longest_wait_asked));

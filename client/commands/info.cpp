@@ -36,12 +36,12 @@ std::string warnings(const std::vector<std::string>& sentences) {
 // values that do not occur.
 std::string tally(std::map<std::int32_t, std::uint64_t> counts, const NameTable& names) {
   for (const auto& [id, name] : names) counts.try_emplace(id, 0);
-  constexpr std::size_t kMostListed = 20;
+  constexpr std::size_t kMaxListed = 20;
   std::string text;
   std::size_t listed = 0;
   for (const auto& [value, count] : counts) {
-    if (listed++ == kMostListed)
-      return text + " and " + std::to_string(counts.size() - kMostListed) + " more";
+    if (listed++ == kMaxListed)
+      return text + " and " + std::to_string(counts.size() - kMaxListed) + " more";
     if (!text.empty()) text += ", ";
     const std::string* const name = name_of(names, value);
     text += std::to_string(value) + (name ? " '" + *name + "'" : "") + " (" +

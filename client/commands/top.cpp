@@ -21,7 +21,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 Result<TopSample> look(JobServer& server) {
-  constexpr std::size_t kMostEnded = 500;
+  constexpr std::size_t kMaxEnded = 500;
   auto info = server.info();
   if (!info) return tl::unexpected(info.error());
   auto open = server.list({v1::JOB_STATE_QUEUED, v1::JOB_STATE_RUNNING}, std::nullopt);
@@ -31,9 +31,9 @@ Result<TopSample> look(JobServer& server) {
   std::set<v1::JobState> left_out;
   for (const v1::JobState state :
        {v1::JOB_STATE_SUCCEEDED, v1::JOB_STATE_FAILED, v1::JOB_STATE_CANCELLED}) {
-    auto jobs = server.list({state}, kMostEnded);
+    auto jobs = server.list({state}, kMaxEnded);
     if (!jobs) return tl::unexpected(jobs.error());
-    if (jobs->size() == kMostEnded) left_out.insert(state);
+    if (jobs->size() == kMaxEnded) left_out.insert(state);
     std::ranges::move(*jobs, std::back_inserter(ended));
   }
   const double now = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();

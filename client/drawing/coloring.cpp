@@ -9,8 +9,8 @@
 namespace weft::client {
 namespace {
 
-constexpr double kLeastLog = -1080;  // the binary logarithm of the smallest double
-constexpr double kMostLog = 1024;
+constexpr double kMinLog = -1080;  // the binary logarithm of the smallest double
+constexpr double kMaxLog = 1024;
 constexpr double kStepsPerOctave = 16;
 
 }  // namespace
@@ -18,30 +18,30 @@ constexpr double kStepsPerOctave = 16;
 Coloring::Coloring(DrawColor by, DrawnUnit unit, AreaBound bound)
     : by_(by), unit_(unit), bound_(std::move(bound)) {
   if (by_ == DrawColor::kSize)
-    area_at_.resize(static_cast<std::size_t>((kMostLog - kLeastLog) * kStepsPerOctave) + 1);
+    area_at_.resize(static_cast<std::size_t>((kMaxLog - kMinLog) * kStepsPerOctave) + 1);
 }
 
 float Coloring::value(const DrawnTriangle& triangle) const {
   if (by_ == DrawColor::kAngle) return static_cast<float>(smallest_angle_deg(triangle, unit_));
   if (by_ == DrawColor::kBound) {
-    constexpr double kMost = 1e6;
+    constexpr double kMax = 1e6;
     const double bound = bound_(centroid(triangle));
     if (!(bound > 0)) return 0;
-    return static_cast<float>(std::min(area(triangle, DrawnUnit::kNone) / bound, kMost));
+    return static_cast<float>(std::min(area(triangle, DrawnUnit::kNone) / bound, kMax));
   }
   const double size = std::max(area(triangle, unit_), std::numeric_limits<double>::denorm_min());
-  return static_cast<float>(std::clamp(std::log2(size), kLeastLog, kMostLog));
+  return static_cast<float>(std::clamp(std::log2(size), kMinLog, kMaxLog));
 }
 
 void Coloring::note(float value, double weight) {
   constexpr float kRounding = 1e-6F;
   if (by_ == DrawColor::kBound) above_bound_ = above_bound_ || value > 1 + kRounding;
   if (area_at_.empty()) return;
-  area_at_[static_cast<std::size_t>((double{value} - kLeastLog) * kStepsPerOctave)] += weight;
+  area_at_[static_cast<std::size_t>((double{value} - kMinLog) * kStepsPerOctave)] += weight;
 }
 
 void Coloring::note_region(std::int32_t region) {
-  if (regions_.size() < kMostRegions) regions_.insert(region);
+  if (regions_.size() < kMaxRegions) regions_.insert(region);
 }
 
 ValueRange Coloring::range() const {
@@ -52,7 +52,7 @@ ValueRange Coloring::range() const {
   for (const double area : area_at_) all += area;
   if (!(all > 0)) return {0, 1};
   const auto log_at = [](std::size_t step) {
-    return kLeastLog + static_cast<double>(step) / kStepsPerOctave;
+    return kMinLog + static_cast<double>(step) / kStepsPerOctave;
   };
   std::size_t low = 0;
   for (double below = 0; (below += area_at_[low]) <= kLeftOut * all;) ++low;

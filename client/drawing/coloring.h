@@ -47,7 +47,7 @@ class Coloring {
 
   // Those that were noted first.
   const std::set<std::int32_t>& regions() const { return regions_; }
-  static constexpr std::size_t kMostRegions = 64;
+  static constexpr std::size_t kMaxRegions = 64;
 
  private:
   DrawColor by_;

@@ -180,7 +180,7 @@ void Drawing::draw_as_image() {
 }
 
 void Drawing::keep(const DrawnTriangle& triangle) {
-  if (kept_.size() < kMostVectors) return kept_.push_back(triangle);
+  if (kept_.size() < kMaxVectors) return kept_.push_back(triangle);
   draw_as_image();
   image_->add(triangle);
 }
@@ -221,7 +221,7 @@ void Drawing::draw_marks(const Page& page) const {
   const double height = 0.7 * page.em;
   if (options_.labels && !page.dense) put_labels(page.cairo, page.canvas, kept_, edges_, height);
   const std::vector<WorstTriangle> worst = worst_.sorted();
-  constexpr std::size_t kMostNumbered = 30;
+  constexpr std::size_t kMaxNumbered = 30;
   for (std::size_t i = worst.size(); i-- > 0;) {  // the worst is drawn last, on top
     const PagePoint at = page.canvas.at(centroid(worst[i].triangle));
     double radius = 0.5 * page.em;
@@ -231,7 +231,7 @@ void Drawing::draw_marks(const Page& page) const {
     }
     radius = std::min(radius, 4 * page.em);
     put_mark(page.cairo, at, radius, 0.1 * page.em);
-    if (worst.size() <= kMostNumbered)
+    if (worst.size() <= kMaxNumbered)
       put_text(page.cairo, {at.x + 0.75 * radius + 0.1 * page.em, at.y - 0.75 * radius},
                std::to_string(i + 1), {.height = 0.8 * page.em, .halo = true, .color = kMarkInk});
   }
@@ -287,9 +287,9 @@ Legend Drawing::legend(const Page& page) const {
 
 Result<void> Drawing::check_coordinates() const {
   for (const double bound : {extent_.min_x, extent_.min_y, extent_.max_x, extent_.max_y})
-    if (!extent_.empty() && !(std::abs(bound) <= kMostCoordinate))
+    if (!extent_.empty() && !(std::abs(bound) <= kMaxCoordinate))
       return fail(ExitCode::kUnreadableInput, "the mesh has a coordinate of " + shortest(bound) +
-                                                  ", drawings go to " + shortest(kMostCoordinate));
+                                                  ", drawings go to " + shortest(kMaxCoordinate));
   return {};
 }
 

@@ -5,7 +5,7 @@
 //
 // If the triangles are a few pixels small they are drawn into an image (dense.h), whose pixels show
 // the mean size, unless other colours are asked for; in SVG and PDF the image is embedded under a
-// boundary of vectors. If more than kMostVectors triangles are seen, they always are, piece by
+// boundary of vectors. If more than kMaxVectors triangles are seen, they always are, piece by
 // piece while they arrive: only the image and the boundary are kept of them. So memory does not
 // grow with the mesh.
 //
@@ -52,9 +52,9 @@ class Legend;
 
 class Drawing {
  public:
-  static constexpr std::size_t kMostVectors = std::size_t{1} << 18;
+  static constexpr std::size_t kMaxVectors = std::size_t{1} << 18;
   // Coordinates beyond it are not drawn.
-  static constexpr double kMostCoordinate = 1e100;
+  static constexpr double kMaxCoordinate = 1e100;
 
   // `bound` is of the triangles' areas, in square units of the mesh, and is asked by this thread.
   // REQUIRES: it is not empty if the colour is kBound.
@@ -65,7 +65,7 @@ class Drawing {
 
   // Adds the next piece of the mesh: its triangles, their regions (none: all are 0) and its edges,
   // with the coordinates of all vertices so far. Triangles may have either orientation. Without a
-  // zoom, all corners of the mesh should be among the vertices before triangle kMostVectors; what
+  // zoom, all corners of the mesh should be among the vertices before triangle kMaxVectors; what
   // lies outside their box is cut off.
   void add(const MeshView& piece);
   // Puts a ring around each place, with the number of the call, which the legend explains.
@@ -79,7 +79,7 @@ class Drawing {
 
   // Draws what was added. `boxes` are min x, min y, max x, max y of each, in the unit of the mesh;
   // parts outside the page are cut off. Failures to write stay in the file; other errors:
-  // kUnreadableInput for a coordinate beyond kMostCoordinate; kInternal is cairo's, or there is
+  // kUnreadableInput for a coordinate beyond kMaxCoordinate; kInternal is cairo's, or there is
   // none.
   Result<void> draw(DrawFormat format, std::span<const double> boxes, OutputFile& file) const;
   // The pixels of a PNG, without boxes. Errors: those of draw.

@@ -33,14 +33,14 @@ struct DrawnBox {
 };
 
 struct DrawOptions {
-  static constexpr std::uint32_t kLeastPixels = 200;
-  static constexpr std::uint32_t kMostPixels = 8192;
+  static constexpr std::uint32_t kMinPixels = 200;
+  static constexpr std::uint32_t kMaxPixels = 8192;
   static constexpr std::uint32_t kDefaultPixels = 1800;
-  static constexpr std::uint32_t kMostWorst = 1000;
+  static constexpr std::uint32_t kMaxWorst = 1000;
 
   DrawColor color = DrawColor::kAuto;
-  // The longer side of the mesh in a PNG, or in the image of a dense mesh, kLeastPixels to
-  // kMostPixels; pages of SVG and PDF have half as many points. None: kDefaultPixels.
+  // The longer side of the mesh in a PNG, or in the image of a dense mesh, kMinPixels to
+  // kMaxPixels; pages of SVG and PDF have half as many points. None: kDefaultPixels.
   std::optional<std::uint32_t> pixels{};
   std::optional<DrawnBox> zoom{};        // none: all of the mesh
   std::optional<std::uint32_t> worst{};  // marks so many triangles of the smallest angles

@@ -21,15 +21,15 @@ constexpr double kBaseline = 1.1;  // of text beside a bar
 constexpr double kBelow = 2.25;    // baseline of text below a bar
 constexpr double kSmall = 0.82;    // height of that text
 constexpr double kValueBarWidth = 18;
-constexpr std::size_t kMostSwatches = 24;
+constexpr std::size_t kMaxSwatches = 24;
 
 // At most so many characters of a name.
 std::string abbreviated(const std::string& name) {
-  constexpr std::size_t kMost = 32;
+  constexpr std::size_t kMax = 32;
   std::size_t characters = 0;
   for (std::size_t i = 0; i < name.size(); ++i) {
     const bool begins = (static_cast<unsigned char>(name[i]) & 0xC0) != 0x80;  // of UTF-8
-    if (begins && ++characters > kMost) return name.substr(0, i) + "\u2026";
+    if (begins && ++characters > kMax) return name.substr(0, i) + "\u2026";
   }
   return name;
 }
@@ -212,7 +212,7 @@ void Legend::add_regions(const Coloring& coloring, const NameTable& names) {
   parts_.push_back(part_of("region"));
   std::size_t told = 0;
   for (const std::int32_t region : coloring.regions()) {
-    if (told++ == kMostSwatches) {
+    if (told++ == kMaxSwatches) {
       parts_.push_back(part_of("..."));
       break;
     }

@@ -14,7 +14,7 @@ namespace weft::client {
 namespace {
 
 // cairo becomes slow with long paths.
-constexpr std::size_t kMostOfAPath = 1000;
+constexpr std::size_t kMaxOfAPath = 1000;
 
 std::array<PagePoint, 3> on_page(const DrawnTriangle& triangle, const Canvas& canvas) {
   return {canvas.at(triangle.corners[0]), canvas.at(triangle.corners[1]),
@@ -47,7 +47,7 @@ void Vectors::stroke(std::span<const Line> lines, const Color& color, double alp
     if (!seen) continue;
     loaded_cairo().cairo_move_to(cairo_, seen->first.x, seen->first.y);
     loaded_cairo().cairo_line_to(cairo_, seen->second.x, seen->second.y);
-    if (++count % kMostOfAPath == 0) loaded_cairo().cairo_stroke(cairo_);
+    if (++count % kMaxOfAPath == 0) loaded_cairo().cairo_stroke(cairo_);
   }
   loaded_cairo().cairo_stroke(cairo_);
 }
@@ -114,7 +114,7 @@ void Vectors::fill_one_color(std::span<const DrawnTriangle> triangles,
     loaded_cairo().cairo_new_sub_path(cairo_);
     for (const PagePoint& p : seen.corners()) loaded_cairo().cairo_line_to(cairo_, p.x, p.y);
     loaded_cairo().cairo_close_path(cairo_);
-    if (++count % kMostOfAPath == 0) loaded_cairo().cairo_fill(cairo_);
+    if (++count % kMaxOfAPath == 0) loaded_cairo().cairo_fill(cairo_);
   }
   loaded_cairo().cairo_fill(cairo_);
 }

@@ -36,14 +36,14 @@ Json geometry_of(const Finding& finding) {
 }  // namespace
 
 std::string lint_text(const Lint& lint) {
-  constexpr std::uint64_t kMostOfAKind = 20;
+  constexpr std::uint64_t kMaxOfAKind = 20;
   std::string text;
   std::size_t next = 0;
   for (const auto& [kind, total] : lint.counts) {
     std::uint64_t told = 0;
     for (; next < lint.findings.size() && lint.findings[next].kind == kind; ++next) {
       const Finding& finding = lint.findings[next];
-      if (told == kMostOfAKind) continue;
+      if (told == kMaxOfAKind) continue;
       ++told;
       text += kind + (finding.at ? " at " + place_text(*finding.at) : "") + ": " + finding.text +
               (finding.remedy.empty() ? "" : "; " + finding.remedy) + "\n";

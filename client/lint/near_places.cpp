@@ -13,9 +13,9 @@ namespace weft::client {
 std::string near_places_text(const Domain& domain, const DataPath& file,
                              const v1::Summary& summary) {
   // Of larger domains lint takes longer than the mesh.
-  constexpr std::size_t kMostSegments = 1'000'000;
+  constexpr std::size_t kMaxSegments = 1'000'000;
   if (summary.unrefined().small_input_angle() == 0 || summary.has_narrow() ||
-      domain.segments.size() > kMostSegments)
+      domain.segments.size() > kMaxSegments)
     return "";
   const auto lint = lint_domain(domain, file, {});
   if (!lint) return "";

@@ -15,16 +15,16 @@ namespace {
 // "marker 7", "markers 7, 8 and 12 more"; nullopt if `wanted` are all in the mesh.
 std::optional<std::string> absent(NameKind kind, const std::set<std::int32_t>& wanted,
                                   const std::set<std::int32_t>& in_mesh) {
-  constexpr std::size_t kMostNamed = 5;
+  constexpr std::size_t kMaxNamed = 5;
   std::vector<std::int32_t> missing;
   for (const std::int32_t number : wanted)
     if (!in_mesh.contains(number)) missing.push_back(number);
   if (missing.empty()) return std::nullopt;
   std::string text = std::string(word_of(kind)) + (missing.size() == 1 ? " " : "s ");
-  for (std::size_t i = 0; i < missing.size() && i < kMostNamed; ++i)
+  for (std::size_t i = 0; i < missing.size() && i < kMaxNamed; ++i)
     text += (i == 0 ? "" : ", ") + std::to_string(missing[i]);
-  if (missing.size() > kMostNamed)
-    text += " and " + with_separators(missing.size() - kMostNamed) + " more";
+  if (missing.size() > kMaxNamed)
+    text += " and " + with_separators(missing.size() - kMaxNamed) + " more";
   return text;
 }
 
@@ -128,11 +128,11 @@ std::vector<std::string> contradicting_marker_warnings(const Domain& domain) {
     boxes.push_back(check::box_of({a.x, a.y}, {b.x, b.y}));
   }
   const check::BoxTree tree(boxes);
-  constexpr std::size_t kMostPairs = 50'000'000;  // of boxes that meet
+  constexpr std::size_t kMaxPairs = 50'000'000;  // of boxes that meet
   std::size_t looked_at = 0;
   std::size_t found = 0;
   std::pair<std::size_t, std::size_t> first;
-  for (std::size_t i = 0; i < marked.size() && looked_at < kMostPairs; ++i)
+  for (std::size_t i = 0; i < marked.size() && looked_at < kMaxPairs; ++i)
     tree.visit(boxes[i], [&](std::uint32_t j) {
       ++looked_at;
       const Domain::Segment& s = domain.segments[marked[j]];

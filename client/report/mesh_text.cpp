@@ -228,9 +228,9 @@ std::string unrefined_warning(const v1::Unrefined& unrefined) {
 
 std::string overlap_text(const v1::Summary& summary) {
   // What rounding makes where polygons share a border is not worth a line.
-  constexpr double kLeast = 1e-9;
+  constexpr double kMin = 1e-9;
   const v1::Overlap& overlap = summary.overlap();
-  if (overlap.areas() == 0 || overlap.area() <= kLeast * summary.area()) return "";
+  if (overlap.areas() == 0 || overlap.area() <= kMin * summary.area()) return "";
   return with_separators(overlap.areas()) + " polygons overlap on an area of " +
          rounded(overlap.area()) +
          (overlap.united() ? ", which is meshed once\n"
@@ -302,12 +302,12 @@ std::string merging_text(const v1::Merging& merging) {
 }
 
 std::string region_values_text(std::span<const RegionValue> values) {
-  constexpr std::size_t kMostListed = 20;
+  constexpr std::size_t kMaxListed = 20;
   std::string text;
-  for (const auto& [id, value] : values.first(std::min(values.size(), kMostListed)))
+  for (const auto& [id, value] : values.first(std::min(values.size(), kMaxListed)))
     text += "region " + std::to_string(id) + " = " + shortest(value) + "\n";
-  if (values.size() > kMostListed)
-    text += "and " + std::to_string(values.size() - kMostListed) + " more regions\n";
+  if (values.size() > kMaxListed)
+    text += "and " + std::to_string(values.size() - kMaxListed) + " more regions\n";
   return text;
 }
 

@@ -32,12 +32,12 @@ OptionValue<DrawOptions> zoom() {
               if (count == numbers.size() || !number) return not_a_box(texts.front());
               numbers[count] = *number;
             }
-            constexpr double kMost = 1e100;
-            constexpr double kLeastOfThePlace = 1e-12;
+            constexpr double kMax = 1e100;
+            constexpr double kMinOfThePlace = 1e-12;
             const auto [x, y, width, height] = numbers;
             const auto is_side = [](double side, double place) {
-              return std::abs(place) <= kMost && side >= 1 / kMost && side <= kMost &&
-                     side >= kLeastOfThePlace * std::abs(place);
+              return std::abs(place) <= kMax && side >= 1 / kMax && side <= kMax &&
+                     side >= kMinOfThePlace * std::abs(place);
             };
             if (count != numbers.size() || !is_side(width, x) || !is_side(height, y))
               return not_a_box(texts.front());
@@ -113,7 +113,7 @@ const OptionRows<MeshWriteOptions>& writing_rows() {
       {"parts", "",
        "Divide the triangles into N parts of the same size with few edges between them, for N "
        "processes; .vtu, .nc, .npz, .xdmf and .exo store the part of each triangle. Needs METIS",
-       "", number("N", &Writing::parts, 1, kMostParts)},
+       "", number("N", &Writing::parts, 1, kMaxParts)},
   };
   return rows;
 }
@@ -137,7 +137,7 @@ const OptionRows<DrawOptions>& drawing_rows() {
        "drawing",
        "", zoom()},
       {"worst", "", "Mark the N triangles with the smallest angles in drawings", "",
-       number("N", &Draw::worst, 1, Draw::kMostWorst)},
+       number("N", &Draw::worst, 1, Draw::kMaxWorst)},
       {"labels", "",
        "Write the numbers of vertices and triangles, and the markers, into drawings if they fit",
        "", on_or_off(&Draw::labels)},
@@ -146,7 +146,7 @@ const OptionRows<DrawOptions>& drawing_rows() {
       {"draw-size", "WEFT_DRAW_SIZE",
        "Longer side of the mesh in drawings, in pixels; .svg and .pdf have half as many points",
        std::to_string(Draw::kDefaultPixels),
-       number("PX", &Draw::pixels, Draw::kLeastPixels, Draw::kMostPixels)},
+       number("PX", &Draw::pixels, Draw::kMinPixels, Draw::kMaxPixels)},
   };
   return rows;
 }

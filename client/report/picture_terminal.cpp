@@ -73,11 +73,11 @@ bool is_something_typed() {
 // WEFT_TERMINAL_WAIT, in seconds, if it is a number up to a minute.
 std::chrono::duration<double> patience() {
   constexpr double kDefault = 0.2;
-  constexpr double kMost = 60;
+  constexpr double kMax = 60;
   const char* const text = std::getenv("WEFT_TERMINAL_WAIT");
   const auto seconds = text == nullptr ? std::nullopt : value_of<double>(text);
-  return std::chrono::duration<double>(seconds && *seconds >= 0 && *seconds <= kMost ? *seconds
-                                                                                     : kDefault);
+  return std::chrono::duration<double>(seconds && *seconds >= 0 && *seconds <= kMax ? *seconds
+                                                                                    : kDefault);
 }
 
 std::optional<PictureProtocol> ask() {
@@ -101,13 +101,13 @@ std::optional<PictureProtocol> ask() {
 
 std::uint32_t small_side() {
   constexpr double kUnknown = 400;
-  constexpr double kLeast = 200;
-  constexpr double kMost = 800;
+  constexpr double kMin = 200;
+  constexpr double kMax = 800;
   winsize size{};
   if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_xpixel == 0 || size.ws_ypixel == 0)
     return static_cast<std::uint32_t>(kUnknown);
   return static_cast<std::uint32_t>(
-      std::clamp(std::min(0.5 * size.ws_xpixel, 0.6 * size.ws_ypixel), kLeast, kMost));
+      std::clamp(std::min(0.5 * size.ws_xpixel, 0.6 * size.ws_ypixel), kMin, kMax));
 }
 
 bool has_attribute(std::string_view list, std::string_view wanted) {

@@ -14,7 +14,7 @@
 namespace weft::client {
 namespace {
 
-constexpr std::size_t kMostColors = 256;
+constexpr std::size_t kMaxColors = 256;
 constexpr std::uint32_t kBits = 5;  // of a channel; colours that share them are one
 constexpr std::uint32_t kRow = 6;   // pixels of a sixel
 
@@ -107,7 +107,7 @@ Palette palette_of(const Image& image) {
     if (all[i].count > 0) used.push_back(all[i]);
   }
   std::vector<Group> groups = {Group(std::move(used))};
-  while (groups.size() < kMostColors) {
+  while (groups.size() < kMaxColors) {
     const auto widest =
         std::max_element(groups.begin(), groups.end(),
                          [](const Group& a, const Group& b) { return a.spread < b.spread; });
@@ -149,7 +149,7 @@ void add_run(std::string& text, std::size_t count, std::uint8_t bits) {
 
 // Six rows of pixels: the columns of one colour after those of another.
 void add_band(std::string& text, const std::vector<std::uint8_t>& colors, std::size_t width) {
-  std::array<std::vector<std::uint8_t>, kMostColors> columns;
+  std::array<std::vector<std::uint8_t>, kMaxColors> columns;
   for (std::size_t i = 0; i < colors.size(); ++i) {
     auto& of_color = columns[colors[i]];
     of_color.resize(width);

@@ -16,8 +16,8 @@ namespace weft::client {
 namespace {
 
 std::string rate_text(double per_second) {
-  constexpr double kMost = 1e15;  // more than this only a faulty server reports
-  return with_separators(static_cast<std::uint64_t>(std::llround(std::min(per_second, kMost)))) +
+  constexpr double kMax = 1e15;  // more than this only a faulty server reports
+  return with_separators(static_cast<std::uint64_t>(std::llround(std::min(per_second, kMax)))) +
          " triangles/s";
 }
 
@@ -180,7 +180,7 @@ std::vector<std::string> TopView::ended(std::size_t most) const {
 }
 
 std::string TopView::text(const std::optional<ScreenSize>& size) const {
-  constexpr std::size_t kMostEnded = 10;
+  constexpr std::size_t kMaxEnded = 10;
   std::vector<std::string> lines = head();
   const auto append = [&lines](const char* heading, std::vector<std::string> table) {
     if (table.empty()) return;
@@ -188,7 +188,7 @@ std::string TopView::text(const std::optional<ScreenSize>& size) const {
     lines.insert(lines.end(), table.begin(), table.end());
   };
   append("AT WORK", running());
-  append("ENDED", ended(kMostEnded));
+  append("ENDED", ended(kMaxEnded));
   if (size && lines.size() > size->lines) lines.resize(size->lines);
   std::string text;
   for (std::string& line : lines) {

@@ -65,8 +65,7 @@ class Signal {
 
 struct Arena::Threads {
   explicit Threads(int threads)
-      : workers(at_most(threads + kMostResting)),
-        arena(threads + kMostResting, kReservedForCallers) {
+      : workers(at_most(threads + kMaxResting)), arena(threads + kMaxResting, kReservedForCallers) {
     arena.initialize();  // TBB warns if an arena is larger than allowed
     workers = at_most(threads);
   }
@@ -126,7 +125,7 @@ void Arena::run_on(int threads, const std::function<void()>& f) {
 void Arena::change_resting(int by) {
   const std::lock_guard lock(pool_->mutex);
   pool_->resting += by;
-  pool_->workers = at_most(threads_ + std::min(pool_->resting, kMostResting));
+  pool_->workers = at_most(threads_ + std::min(pool_->resting, kMaxResting));
 }
 
 }  // namespace weft

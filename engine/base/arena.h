@@ -64,7 +64,7 @@ class Arena {
   void start(std::function<void()> f);
 
   // Returns f(), which waits for something outside the arena. If the caller is one of the arena's
-  // threads, another thread computes in its place meanwhile, for up to kMostResting callers at a
+  // threads, another thread computes in its place meanwhile, for up to kMaxResting callers at a
   // time. When f returns, the caller computes at once, so for a while one thread more computes than
   // the arena has.
   template <class F>
@@ -75,7 +75,7 @@ class Arena {
   }
 
  private:
-  static constexpr int kMostResting = 64;
+  static constexpr int kMaxResting = 64;
 
   struct Threads;
 

@@ -21,16 +21,16 @@ using Triangle = std::array<Point, 3>;
 using TreeBox = bg::model::box<bg::model::point<double, 2, bg::cs::cartesian>>;
 using Tree = bg::index::rtree<std::pair<TreeBox, std::uint32_t>, bg::index::quadratic<16>>;
 
-constexpr double kMostOfWidth = 0.4;                      // that layers take
-constexpr double kToOthers = 0.5 / kMostOfWidth;          // how much thicker they would meet
-constexpr double kToObstacles = 1 / kMostOfWidth;         // what is opposite
-constexpr std::size_t kMostWalls = std::size_t{1} << 20;  // edges
-constexpr std::uint64_t kBytesPerEdge = 100;              // of the boundary
-constexpr std::uint64_t kBytesPerWall = 1000;             // with its corners, and boxes in trees
-constexpr double kMostOfEdge = 0.4;     // by which a corner shifts a spoke along it
-constexpr double kMostGrowth = 0.5;     // of the thickness, over the length of an edge
+constexpr double kMaxOfWidth = 0.4;                      // that layers take
+constexpr double kToOthers = 0.5 / kMaxOfWidth;          // how much thicker they would meet
+constexpr double kToObstacles = 1 / kMaxOfWidth;         // what is opposite
+constexpr std::size_t kMaxWalls = std::size_t{1} << 20;  // edges
+constexpr std::uint64_t kBytesPerEdge = 100;             // of the boundary
+constexpr std::uint64_t kBytesPerWall = 1000;            // with its corners, and boxes in trees
+constexpr double kMaxOfEdge = 0.4;      // by which a corner shifts a spoke along it
+constexpr double kMaxGrowth = 0.5;      // of the thickness, over the length of an edge
 constexpr double kShrink = 0.8;         // in a round, where layers are too thick
-constexpr double kMostMissing = 1e-6;   // of a piece of the line
+constexpr double kMaxMissing = 1e-6;    // of a piece of the line
 constexpr double kCosineOfFan = 0.5;    // of 60 degrees
 constexpr double kCosineOfStep = 0.86;  // of 30.7 degrees, between the spokes of a fan
 constexpr double kCosineOfSide = 0.70710678118654752;  // of 45 degrees
@@ -213,10 +213,10 @@ class LayerPlanner {
                      "quality.layers[" + std::to_string(i) +
                          "]: no segment of the domain has the marker " +
                          std::to_string(layers_[i].marker)};
-    if (walls > kMostWalls)
+    if (walls > kMaxWalls)
       return Error{ErrorCode::kLimitExceeded, "quality.layers",
                    "quality.layers: walls have " + std::to_string(walls) +
-                       " edges; layers are laid along " + std::to_string(kMostWalls) + " at most"};
+                       " edges; layers are laid along " + std::to_string(kMaxWalls) + " at most"};
     if (auto error = context_.need_bytes(
             domain_.bytes() + kBytesPerEdge * edges_.size() + kBytesPerWall * walls,
             "the plan of layers"))
@@ -308,7 +308,7 @@ class LayerPlanner {
       corner.spokes.push_back((1 / (1 + cosine)) * (left_of(d) + left_of(e)));
       const double shift = thickness * sine / (1 + cosine);
       const double shorter = std::min(length(along(edges_[in])), length(along(edges_[out])));
-      if (shift > kMostOfEdge * shorter) corner.scale = kMostOfEdge * shorter / shift;
+      if (shift > kMaxOfEdge * shorter) corner.scale = kMaxOfEdge * shorter / shift;
     }
     for (Vector& spoke : corner.spokes) spoke = thickness * spoke;
     return add(std::move(corner));
@@ -326,7 +326,7 @@ class LayerPlanner {
       corner.side = edges_[side].subsegment;
       corner.spokes.push_back((thickness / sine) * direction);
       const double share = thickness / sine / length(onto);
-      if (share > kMostOfEdge) corner.scale = kMostOfEdge / share;
+      if (share > kMaxOfEdge) corner.scale = kMaxOfEdge / share;
     }
     return add(std::move(corner));
   }
@@ -479,7 +479,7 @@ class LayerPlanner {
     const auto follow = [this](const Edge& edge, Corner& corner, const Corner& other) {
       if (corner.spokes.empty()) return;
       const double asked = thickness_of(layers_[edge.layers]);
-      const double most = thickness(other, edge.layers) + kMostGrowth * length(along(edge));
+      const double most = thickness(other, edge.layers) + kMaxGrowth * length(along(edge));
       corner.scale = std::min(corner.scale, most / asked);
     };
     for (int round = 0; round < 2; ++round) {  // a second time for walls that go around
@@ -497,7 +497,7 @@ class LayerPlanner {
         const Corner& corner = corners_[c];
         const double row = corner.scale * layers_[edge.layers].first;
         if (corner.spokes.empty() ||
-            (row > kLeastRow * tolerance_ && thickness(corner, edge.layers) > kLeast * tolerance_))
+            (row > kMinRow * tolerance_ && thickness(corner, edge.layers) > kMin * tolerance_))
           continue;
         return bad(edge.layers,
                    "there is no room for layers, of a first row of " + rough_text(row) + ",",
@@ -538,8 +538,8 @@ class LayerPlanner {
 
   // In tolerances: a row is no thinner than refinement's edges are short, and the line is apart
   // from the wall.
-  static constexpr double kLeastRow = 1.0 / 64;
-  static constexpr double kLeast = 16;
+  static constexpr double kMinRow = 1.0 / 64;
+  static constexpr double kMin = 16;
 
   struct Obstacle {
     std::array<Point, 2> ends;
@@ -620,7 +620,7 @@ std::optional<Error> LayerPlan::check(const Pslg& pslg, const Domain& before,
           length(domain.vertices[s.b] - domain.vertices[s.a]);
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const Spoke &a = spokes_[pieces_[i].first], &b = spokes_[pieces_[i].last];
-    if (std::fabs(missing[i]) > kMostMissing * length(b.tip - a.tip))
+    if (std::fabs(missing[i]) > kMaxMissing * length(b.tip - a.tip))
       return wrong("something crosses the line on which they end", a.tip);
   }
   if (std::fabs(all - area_of(domain) - area_) > kRounding * all)

@@ -146,9 +146,9 @@ class CoarsePhase {
 
   std::vector<Run> runs() const {
     std::vector<Run> result;
-    constexpr std::uint32_t kMost = 32;  // slots: with pieces, each has many samples
+    constexpr std::uint32_t kMax = 32;  // slots: with pieces, each has many samples
     slots_.for_triangles([&](std::uint32_t first, std::uint32_t last) {
-      for (; last - first > kMost; first += kMost) result.push_back({first, first + kMost});
+      for (; last - first > kMax; first += kMax) result.push_back({first, first + kMax});
       result.push_back({first, last});
     });
     return result;

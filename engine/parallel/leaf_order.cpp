@@ -30,7 +30,7 @@ std::vector<std::uint32_t> ranks_by_start(
     const std::vector<Quadtree::Leaf>& leaves,
     const std::vector<std::vector<std::uint32_t>>& overlapping,
     const LeafOrder::MayHaveRows& may_have_rows) {
-  constexpr double kLeastWork = 0.02;  // of the mean: every task costs something
+  constexpr double kMinWork = 0.02;  // of the mean: every task costs something
   struct Interval {
     double begin;
     double end;
@@ -38,7 +38,7 @@ std::vector<std::uint32_t> ranks_by_start(
   const double all =
       std::accumulate(leaves.begin(), leaves.end(), 0.0,
                       [](double sum, const Quadtree::Leaf& l) { return sum + l.weight; });
-  const double least = kLeastWork * all / static_cast<double>(leaves.size());
+  const double least = kMinWork * all / static_cast<double>(leaves.size());
   const auto work = [&](std::uint32_t l) { return std::max(leaves[l].weight, least); };
 
   std::vector<std::uint32_t> heaviest_first(leaves.size());

@@ -62,13 +62,11 @@ struct MeshPlan {
   // Smaller blocks leave too many slots unused. A mesh of few leaves has small blocks all the same,
   // so that many threads soon have work.
   double leaves_per_block() const {
-    constexpr double kFewest = 32;  // leaves
-    constexpr double kFew = 256;
-    constexpr double kLeastOfFew = 6;
-    constexpr double kLeast = 16;
+    constexpr double kMinLeaves = 32;
+    constexpr double kFewLeaves = 256;
     const double leaves = expected_by_size / leaf_triangles;
-    if (leaves < kFewest) return 1;
-    return std::max(leaves < kFew ? kLeastOfFew : kLeast, std::sqrt(0.025 * leaves));
+    if (leaves < kMinLeaves) return 1;
+    return std::max<double>(leaves < kFewLeaves ? 6 : 16, std::sqrt(0.025 * leaves));
   }
 
   // Whether leaves pay. Up to some 60,000 triangles that the bound on angles makes, one task is

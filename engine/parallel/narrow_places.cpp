@@ -79,13 +79,13 @@ struct Strip {
 };
 
 double width_of_most(std::vector<Strip>& strips, double lower_bound) {
-  constexpr double kMost = 0.9;
+  constexpr double kMax = 0.9;
   std::sort(strips.begin(), strips.end(),
             [](const Strip& a, const Strip& b) { return a.width < b.width; });
   double width = 0;
   double sum = 0;
   for (const Strip& strip : strips) {
-    if (sum >= kMost * lower_bound) break;
+    if (sum >= kMax * lower_bound) break;
     sum += strip.lower_bound;
     width = strip.width;
   }
@@ -172,8 +172,8 @@ class NarrowPlaces::Search {
 
   // A triangle at whose base an angle is below 7 degrees.
   static constexpr double kThin = 8;
-  static constexpr int kMostVisits = 96;    // triangles, for one look from one point
-  static constexpr int kMostPieces = 2048;  // of a segment
+  static constexpr int kMaxVisits = 96;    // triangles, for one look from one point
+  static constexpr int kMaxPieces = 2048;  // of a segment
 
   Point corner(const Side& side, unsigned i) const {
     return domain_.vertices[domain_.triangles[side.triangle].vertex[(side.edge + i) % 3]];
@@ -206,7 +206,7 @@ class NarrowPlaces::Search {
     const std::uint32_t a = base.vertex[kNext[side.edge]];
     const std::uint32_t b = base.vertex[kPrevious[side.edge]];
     stack_.assign(1, side);
-    for (int visits = 0; !stack_.empty() && visits < kMostVisits; ++visits) {
+    for (int visits = 0; !stack_.empty() && visits < kMaxVisits; ++visits) {
       const Side in = stack_.back();
       stack_.pop_back();
       const Domain::Triangle& t = domain_.triangles[in.triangle];
@@ -255,7 +255,7 @@ class NarrowPlaces::Search {
     };
     split_at(foot(here));
     if (there.triangle != kNone) split_at(1 - foot(there));
-    for (int looks = 0; !open.empty() && looks < kMostPieces; ++looks) {
+    for (int looks = 0; !open.empty() && looks < kMaxPieces; ++looks) {
       const auto [from, to] = open.back();
       open.pop_back();
       constexpr unsigned kPoints = 3;
@@ -377,8 +377,8 @@ double NarrowPlaces::elsewhere(const QualityBounds& quality) {
 
 void NarrowPlaces::add_samples(double triangles_per_sample,
                                std::vector<Quadtree::Sample>& samples) const {
-  constexpr double kMostSamples = 1 << 17;
-  const double most = std::max(triangles_per_sample, expected_ / kMostSamples);
+  constexpr double kMaxSamples = 1 << 17;
+  const double most = std::max(triangles_per_sample, expected_ / kMaxSamples);
   for (const Piece& piece : pieces_) {
     const auto parts = static_cast<std::uint32_t>(std::ceil(piece.triangles / most));
     for (std::uint32_t i = 0; i < parts; ++i)

@@ -23,14 +23,14 @@ std::optional<LatticeRectangle> LatticeRectangle::in(const Box& box, double spac
   constexpr double kFarthest = 1e13;  // spacings from the origin: coordinates are rounded to 0.002
   const double farthest = std::max(std::max(std::fabs(box.min_x), std::fabs(box.max_x)),
                                    std::max(std::fabs(box.min_y), std::fabs(box.max_y)));
-  if (!(farthest < kFarthest * spacing) || jitter > kMostJitter - 0.01) return std::nullopt;
+  if (!(farthest < kFarthest * spacing) || jitter > kMaxJitter - 0.01) return std::nullopt;
   const double left = std::ceil(box.min_x / spacing + 1);
   const double right = std::floor(box.max_x / spacing - 1.5);
   const double bottom = std::ceil((box.min_y / spacing + 1) / kRowRise);
   const double top = std::floor((box.max_y / spacing - 1) / kRowRise);
   const double columns = right - left + 1;
   const double rows = top - bottom + 1;
-  if (columns < kFewest || rows < kFewest || columns * rows > kMostPoints) return std::nullopt;
+  if (columns < kMin || rows < kMin || columns * rows > kMaxPoints) return std::nullopt;
   return LatticeRectangle{.first_column = left,
                           .first_row = bottom,
                           .columns = static_cast<std::uint32_t>(columns),
@@ -63,9 +63,9 @@ void LatticeRectangle::append_ring(std::vector<std::uint32_t>& ring) const {
 }
 
 std::uint32_t LatticeRows::locate(Point p, std::uint32_t from) const {
-  constexpr std::uint32_t kMostSteps = 8192;
+  constexpr std::uint32_t kMaxSteps = 8192;
   std::uint32_t t = from;
-  for (std::uint32_t step = 0; step < kMostSteps; ++step) {
+  for (std::uint32_t step = 0; step < kMaxSteps; ++step) {
     const Triangle& triangle = mesh_.triangles[t];
     if (triangle.dead() || !owns(t)) return kNone;
     std::uint32_t beyond = 3;
@@ -115,7 +115,7 @@ std::optional<LatticeRows::Gain> LatticeRows::fill(std::uint32_t near) {
 // Finds the edges between neighbours on the ring: turns around each point until its edge to the
 // next one is found; that triangle has the next point.
 bool LatticeRows::find_ring(std::uint32_t near) {
-  constexpr std::uint32_t kMostAround = 64;
+  constexpr std::uint32_t kMaxAround = 64;
   inside_edges_.clear();
   outside_edges_.clear();
   std::uint32_t t = locate(mesh_.vertices[vertex_[ring_[0]]], near);
@@ -124,7 +124,7 @@ bool LatticeRows::find_ring(std::uint32_t near) {
     const std::uint32_t from = vertex_[ring_[k]];
     const std::uint32_t to = vertex_[ring_[(k + 1) % ring_.size()]];
     HalfEdge edge = kNone;
-    for (std::uint32_t turn = 0; turn < kMostAround; ++turn) {
+    for (std::uint32_t turn = 0; turn < kMaxAround; ++turn) {
       const Triangle& triangle = mesh_.triangles[t];
       const auto corner = static_cast<std::uint32_t>(
           std::find(triangle.vertex, triangle.vertex + 3, from) - triangle.vertex);

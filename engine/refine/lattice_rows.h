@@ -13,7 +13,7 @@
 //      two triangles per point replace those that were found.
 //
 // Nothing is changed before step 3, and the mesh is constrained Delaunay after it as before. No
-// point is off the lattice by more than kMostJitter each way, so the rows' triangles are acute
+// point is off the lattice by more than kMaxJitter each way, so the rows' triangles are acute
 // (at most 85 degrees, at least 39). Step 2 makes sure that the vertex beyond each edge of the ring
 // sees it at 90 degrees at most. So the two angles opposite an edge of the rows add up to less than
 // 180 degrees, and every edge is locally Delaunay. No segment lies inside, because every edge that
@@ -44,9 +44,9 @@ namespace weft {
 
 // A rectangle of points of the lattice through the origin, in rows of equal length.
 struct LatticeRectangle {
-  static constexpr std::uint32_t kFewest = 10;  // rows, and points in a row
-  static constexpr std::uint32_t kMostPoints = std::uint32_t{1} << 16;
-  static constexpr double kMostJitter = 0.1;  // spacings, with rounding
+  static constexpr std::uint32_t kMin = 10;  // rows, and points in a row
+  static constexpr std::uint32_t kMaxPoints = std::uint32_t{1} << 16;
+  static constexpr double kMaxJitter = 0.1;  // spacings, with rounding
 
   double first_column = 0;  // of the lattice
   double first_row = 0;
@@ -55,8 +55,8 @@ struct LatticeRectangle {
   double spacing = 0;
   double jitter = 0;  // spacings
 
-  // The largest one a spacing inside the box. Returns nullopt if it has fewer than kFewest rows or
-  // columns or more than kMostPoints points, or if coordinates there are too coarse for it.
+  // The largest one a spacing inside the box. Returns nullopt if it has fewer than kMin rows or
+  // columns or more than kMaxPoints points, or if coordinates there are too coarse for it.
   static std::optional<LatticeRectangle> in(const Box& box, double spacing, double jitter);
 
   Point at(std::uint32_t column, std::uint32_t row) const {

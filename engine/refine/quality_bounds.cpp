@@ -16,8 +16,8 @@ QualityBounds QualityBounds::from(double min_angle_deg, double min_edge, double 
   bounds.off_centre = min_angle_deg > 0 ? 0.495 * std::sqrt((1 + cosine) / (1 - cosine)) : 0;
   bounds.min_edge2 = min_edge * min_edge;
   bounds.lens = lens_for(sine);
-  constexpr double kLeastSin2 = 0.01;  // 5.7 degrees, or nothing would keep points off
-  const double cosine_at_kept = 1 - 2 * std::max(bounds.sin2, kLeastSin2);
+  constexpr double kMinSin2 = 0.01;  // 5.7 degrees, or nothing would keep points off
+  const double cosine_at_kept = 1 - 2 * std::max(bounds.sin2, kMinSin2);
   bounds.kept_lens = cosine_at_kept * cosine_at_kept;
   bounds.precision2 = precision * precision;
   bounds.min_length2 = std::max(bounds.min_edge2, bounds.precision2);

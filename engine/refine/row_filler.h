@@ -9,7 +9,7 @@
 // A part is clear if its bound is one value, and no segment of a bad triangle of the leaf comes
 // within two spacings. Neighbours that went first are refined already, so looking around in the
 // mesh would take longer than what it saves. If the leaf is not clear, its
-// quarters are tried, four levels deep, as long as they have kFewest rows. What is missed, because
+// quarters are tried, four levels deep, as long as they have kMin rows. What is missed, because
 // a point of the ring comes too close to a vertex or some other segment is in the way, is refined
 // as if there were no rows; the points of the ring are points that refinement would have placed.
 //
@@ -97,8 +97,7 @@ class RowFiller {
     if (const auto bound = area_.uniform_bound(box)) {
       const double spacing = std::sqrt(lattice_spacing2(*bound, quality_.lattice));
       if (!(spacing > 0) || makes_short_edges(spacing)) return;
-      if (std::min(box.width(), box.height()) < LatticeRectangle::kFewest * kRowRise * spacing)
-        return;
+      if (std::min(box.width(), box.height()) < LatticeRectangle::kMin * kRowRise * spacing) return;
       const auto rectangle = LatticeRectangle::in(box, spacing, quality_.lattice.jitter);
       if (rectangle && is_clear(box, kClear * spacing) && fill(*rectangle, *bound)) return;
     }

@@ -78,7 +78,7 @@ Result<DomainCover> DomainCover::make(const Domain& domain, const ExecutionConte
       box.add(p);
     }
     DomainCover cover(box);
-    cover.divide(std::min(kMostCells, 64 + 8 * domain.vertices.size()));
+    cover.divide(std::min(kMaxCells, 64 + 8 * domain.vertices.size()));
     std::vector<std::uint8_t> cells(cover.columns_ * cover.rows_, 0);
     for (const Domain::Triangle& t : domain.triangles) {
       for (int i = 0; i < 3; ++i) {

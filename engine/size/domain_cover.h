@@ -22,7 +22,7 @@ namespace weft {
 
 class DomainCover {
  public:
-  static constexpr std::size_t kMostCells = std::size_t{1} << 20;  // about; 4 bytes each
+  static constexpr std::size_t kMaxCells = std::size_t{1} << 20;  // about; 4 bytes each
 
   // All of the box. REQUIRES: finite coordinates and a side of it, at least, is positive.
   // NOLINTNEXTLINE(google-explicit-constructor): a box is what it covers.

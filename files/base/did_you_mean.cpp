@@ -26,11 +26,11 @@ std::size_t distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
-  constexpr std::size_t kMostLetters = 64;  // a longer word is none
-  constexpr std::size_t kMostChanges = 2;
-  if (word.size() > kMostLetters) return "";
+  constexpr std::size_t kMaxLetters = 64;  // a longer word is none
+  constexpr std::size_t kMaxChanges = 2;
+  if (word.size() > kMaxLetters) return "";
   std::string nearest;
-  std::size_t least = kMostChanges + 1;
+  std::size_t least = kMaxChanges + 1;
   for (const std::string& candidate : candidates) {
     const std::size_t changes = distance(word, candidate);
     if (changes >= least || 2 * changes >= word.size()) continue;

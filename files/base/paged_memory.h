@@ -149,8 +149,8 @@ class Jumps {
   explicit Jumps(PagedMemory* pages) : pages_(pages) {}
   void to(std::size_t place) {
     constexpr std::size_t kNear = PagedMemory::kStride;
-    constexpr int kMost = 128;  // each may map 64 KiB, the kernel's fault-around
-    if (place - last_ + kNear > 2 * kNear && ++jumps_ == kMost) {
+    constexpr int kMax = 128;  // each may map 64 KiB, the kernel's fault-around
+    if (place - last_ + kNear > 2 * kNear && ++jumps_ == kMax) {
       jumps_ = 0;
       if (pages_ != nullptr) pages_->step();
     }

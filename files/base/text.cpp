@@ -29,11 +29,11 @@ std::string in_quotes(std::string_view text) {
 }
 
 std::string in_quotes(const std::vector<std::string>& texts) {
-  constexpr std::size_t kMost = 24;
+  constexpr std::size_t kMax = 24;
   std::string list;
-  for (std::size_t i = 0; i < texts.size() && i < kMost; ++i)
+  for (std::size_t i = 0; i < texts.size() && i < kMax; ++i)
     list += (i == 0 ? "" : ", ") + in_quotes(texts[i]);
-  return texts.size() > kMost ? list + ", ..." : list;
+  return texts.size() > kMax ? list + ", ..." : list;
 }
 
 std::string harmless(std::string_view text) {

@@ -47,9 +47,9 @@ std::string encoding_of(std::string_view code_page) {
 std::optional<std::string> converted(const std::string& text, const std::string& encoding) {
   const iconv_t state = ::iconv_open("UTF-8", encoding.c_str());
   if (state == reinterpret_cast<iconv_t>(-1)) return std::nullopt;
-  constexpr std::size_t kMostBytes = 4;  // of a character in UTF-8
+  constexpr std::size_t kMaxBytes = 4;  // of a character in UTF-8
   std::string in = text;
-  std::string out(kMostBytes * text.size(), '\0');
+  std::string out(kMaxBytes * text.size(), '\0');
   char* from = in.data();
   char* to = out.data();
   std::size_t left = in.size();

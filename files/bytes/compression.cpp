@@ -66,8 +66,8 @@ class Lz4Block {
     if (rest_.size() < 2) return false;
     const unsigned low = byte();
     const std::size_t back = low | byte() << 8;
-    constexpr std::size_t kLeast = 4;
-    const std::size_t copied = length(token & 15) + kLeast;
+    constexpr std::size_t kMin = 4;
+    const std::size_t copied = length(token & 15) + kMin;
     if (back == 0 || back > out_.size() || copied > size_ - out_.size()) return false;
     for (std::size_t i = 0; i < copied; ++i) out_ += out_[out_.size() - back];
     return true;

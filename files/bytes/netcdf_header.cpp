@@ -155,12 +155,12 @@ std::string NetcdfHeader::header(bool large, std::uint64_t begin) const {
 }
 
 void NetcdfHeader::put(OutputFile& out) const {
-  constexpr std::uint64_t kMostBytes = std::numeric_limits<std::uint32_t>::max() - 3;
-  constexpr std::uint64_t kMostLength = std::numeric_limits<std::int32_t>::max();
+  constexpr std::uint64_t kMaxBytes = std::numeric_limits<std::uint32_t>::max() - 3;
+  constexpr std::uint64_t kMaxLength = std::numeric_limits<std::int32_t>::max();
   const bool large = std::any_of(dimensions_.begin(), dimensions_.end(),
-                                 [](const Dimension& d) { return d.length > kMostLength; }) ||
+                                 [](const Dimension& d) { return d.length > kMaxLength; }) ||
                      std::any_of(variables_.begin(), variables_.end(),
-                                 [this](const Variable& v) { return bytes(v) > kMostBytes; });
+                                 [this](const Variable& v) { return bytes(v) > kMaxBytes; });
   out.put(header(large, header(large, 0).size()));
 }
 

@@ -13,7 +13,7 @@
 namespace weft::files {
 namespace {
 
-constexpr std::size_t kMostNamed = 5;
+constexpr std::size_t kMaxNamed = 5;
 
 std::string replaced(std::string_view name, std::string_view characters, char by) {
   std::string out(name);
@@ -62,12 +62,12 @@ std::string entry_text(NameKind kind, std::int32_t id, const std::string& name) 
 class ShortList {
  public:
   void add(const std::string& text) {
-    if (count_++ < kMostNamed) text_ += (text_.empty() ? "" : ", ") + text;
+    if (count_++ < kMaxNamed) text_ += (text_.empty() ? "" : ", ") + text;
   }
   bool empty() const { return count_ == 0; }
   std::string text() const {
     return text_ +
-           (count_ > kMostNamed ? " and " + with_separators(count_ - kMostNamed) + " more" : "");
+           (count_ > kMaxNamed ? " and " + with_separators(count_ - kMaxNamed) + " more" : "");
   }
 
  private:

@@ -11,8 +11,8 @@ namespace weft::files {
 namespace {
 
 constexpr std::size_t kLongestName = 255;
-constexpr std::size_t kMostNames = 16'384;
-constexpr std::size_t kMostBytes = std::size_t{1} << 20;
+constexpr std::size_t kMaxNames = 16'384;
+constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
 
 // Whether a text is well-formed UTF-8 without control characters (Unicode 15, table 3-7).
 enum class TextFault { kNone, kNoText, kControl };
@@ -57,13 +57,13 @@ Result<std::int32_t> find_marker(std::string_view name, const NameTable& markers
   std::vector<std::string> names;
   for (const auto& [id, text] : markers) names.push_back(text);
   std::string hint = did_you_mean(name, names);
-  constexpr std::size_t kMostNamed = 8;
+  constexpr std::size_t kMaxNamed = 8;
   if (hint.empty() && !names.empty()) {
     hint = "there are ";
-    for (std::size_t k = 0; k < std::min(names.size(), kMostNamed); ++k)
+    for (std::size_t k = 0; k < std::min(names.size(), kMaxNamed); ++k)
       hint += (k == 0 ? "" : ", ") + names[k];
-    if (names.size() > kMostNamed)
-      hint += " and " + with_separators(names.size() - kMostNamed) + " more";
+    if (names.size() > kMaxNamed)
+      hint += " and " + with_separators(names.size() - kMaxNamed) + " more";
   }
   return fail(ExitCode::kUsage, "no marker of the domain is named " + in_quotes(name) + ": " +
                                     (hint.empty() ? "it names none" : hint));
@@ -104,7 +104,7 @@ void NameReader::add(NameKind kind, std::int32_t id, std::string_view name) {
   if (const auto same = ids.find(name); same != ids.end())
     return leave_out(kind, id,
                      "it is " + in_quotes(name) + ", as that of " + std::to_string(same->second));
-  if (count_ == kMostNames || bytes_ + name.size() > kMostBytes)
+  if (count_ == kMaxNames || bytes_ + name.size() > kMaxBytes)
     return leave_out(kind, id, "there are more than a server takes");
   ++count_;
   bytes_ += name.size();
@@ -113,8 +113,8 @@ void NameReader::add(NameKind kind, std::int32_t id, std::string_view name) {
 }
 
 void NameReader::leave_out(NameKind kind, std::int32_t id, const std::string& why) {
-  constexpr std::size_t kMostNamed = 5;
-  if (left_out_++ < kMostNamed)
+  constexpr std::size_t kMaxNamed = 5;
+  if (left_out_++ < kMaxNamed)
     warnings_.push_back({.kind = WarningKind::kName,
                          .file = file_,
                          .text = "a name of " + std::string(word_of(kind)) + " " +

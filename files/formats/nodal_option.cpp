@@ -19,7 +19,7 @@ namespace weft::files {
 namespace {
 
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kMostLetters = 16;  // of the name of a variable in SELAFIN
+constexpr std::size_t kMaxLetters = 16;  // of the name of a variable in SELAFIN
 // Names that some format uses for something else, in lower case.
 constexpr std::string_view kTaken[] = {
     "points",      "triangles",  "regions",      "edges",      "edge_markers", "parts",  // .npz
@@ -29,7 +29,7 @@ constexpr std::string_view kTaken[] = {
 
 bool is_name(const std::string& text) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  return !text.empty() && text.size() <= kMostLetters && is_letter(text[0]) &&
+  return !text.empty() && text.size() <= kMaxLetters && is_letter(text[0]) &&
          std::all_of(text.begin(), text.end(),
                      [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
@@ -106,7 +106,7 @@ auto named(Options& options, const std::string& name) {
 
 std::string nodal_name_fault(const std::string& name, const std::vector<NodalOption>& options) {
   if (!is_name(name))
-    return in_quotes(name) + " is not a name of values: at most " + std::to_string(kMostLetters) +
+    return in_quotes(name) + " is not a name of values: at most " + std::to_string(kMaxLetters) +
            " letters, digits and underscores, the first a letter";
   const std::string lower = lower_case(name);
   if (std::find(std::begin(kTaken), std::end(kTaken), lower) != std::end(kTaken))

@@ -15,7 +15,7 @@
 namespace weft::files {
 namespace {
 
-constexpr std::uint64_t kMostBytes = std::uint64_t{64} << 30;  // the largest limit of a reader
+constexpr std::uint64_t kMaxBytes = std::uint64_t{64} << 30;  // the largest limit of a reader
 
 bool needs_name(const DataPath& file) {
   const DomainFormat* const domain = domain_format(file);
@@ -26,7 +26,7 @@ bool needs_name(const DataPath& file) {
 tl::unexpected<Error> unreadable(int problem) {
   const std::string why = problem == ECANCELED ? "interrupted"
                           : problem == EFBIG
-                              ? "has more than " + std::to_string(kMostBytes) + " bytes"
+                              ? "has more than " + std::to_string(kMaxBytes) + " bytes"
                               : std::strerror(problem);
   return fail(ExitCode::kUnreadableInput, "standard input: " + why);
 }
@@ -44,7 +44,7 @@ Result<void> take_standard_input(const DataPath& file, const std::stop_token& st
   std::error_code ignored;
   const auto taken = open_unlinked(std::filesystem::temp_directory_path(ignored));
   if (!taken) return tl::unexpected(taken.error());
-  if (const int problem = copy_stream(STDIN_FILENO, taken->get(), stop, kMostBytes))
+  if (const int problem = copy_stream(STDIN_FILENO, taken->get(), stop, kMaxBytes))
     return unreadable(problem);
   if (::dup2(taken->get(), STDIN_FILENO) < 0) return unreadable(errno);
   return {};

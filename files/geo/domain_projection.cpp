@@ -14,10 +14,10 @@ namespace weft::files {
 namespace {
 
 constexpr double kStraight = 1e-3;  // of the length of a piece
-constexpr std::size_t kMostPieces = 4096;
-constexpr std::size_t kMostAdded = 1'000'000;
-constexpr std::size_t kMostArcs = 10'000;  // each becomes up to 180 chords
-constexpr std::size_t kMostSamples = 1000;
+constexpr std::size_t kMaxPieces = 4096;
+constexpr std::size_t kMaxAdded = 1'000'000;
+constexpr std::size_t kMaxArcs = 10'000;  // each becomes up to 180 chords
+constexpr std::size_t kMaxSamples = 1000;
 
 // On the sphere, in degrees; exact enough for points that are close.
 double distance_deg(Point a, Point b) {
@@ -90,7 +90,7 @@ std::size_t pieces_of(const Projecting& projecting, Point a, Point b) {
   if (std::abs(longitude_step(a.x, b.x)) + std::abs(b.y - a.y) * std::max(1.0, steep) < kShort)
     return 1;
   std::size_t pieces = 1;
-  while (pieces < kMostPieces && !are_straight(projecting, a, b, pieces)) pieces *= 2;
+  while (pieces < kMaxPieces && !are_straight(projecting, a, b, pieces)) pieces *= 2;
   return pieces;
 }
 
@@ -105,11 +105,11 @@ Result<void> divide(Domain& domain, std::vector<Point>& lonlat, const Projecting
     const std::size_t pieces = pieces_of(projecting, a, b);
     if (pieces == 1) continue;
     added += pieces - 1;
-    if (added > kMostAdded)
+    if (added > kMaxAdded)
       return fail(ExitCode::kUnreadableInput,
                   domain.segment_places.locate(i) +
                       ": the domain has so many long segments that more than " +
-                      with_separators(kMostAdded) + " points would have to be added on them");
+                      with_separators(kMaxAdded) + " points would have to be added on them");
     // Two segments between the same points get the same points, whatever their directions.
     const bool turned = std::pair(b.x, b.y) < std::pair(a.x, a.y);
     if (turned) std::swap(a, b);
@@ -139,7 +139,7 @@ Result<void> divide(Domain& domain, std::vector<Point>& lonlat, const Projecting
 Projection::Distortion distortion_over(const Projection& projection,
                                        const std::vector<Point>& lonlat, Point centre) {
   Projection::Distortion all = projection.distortion_at(centre);
-  const std::size_t stride = 1 + (lonlat.size() - 1) / kMostSamples;
+  const std::size_t stride = 1 + (lonlat.size() - 1) / kMaxSamples;
   for (std::size_t i = 0; i < lonlat.size(); i += stride) {
     const auto here = projection.distortion_at(lonlat[i]);
     all.least_scale = std::fmin(all.least_scale, here.least_scale);
@@ -164,10 +164,10 @@ Result<DomainProjection> DomainProjection::project(Domain& domain,
   if (!Projection::available())
     return fail(ExitCode::kUsage,
                 "this weft was built without PROJ, which projects longitude and latitude");
-  if (domain.arcs.size() > kMostArcs)
+  if (domain.arcs.size() > kMaxArcs)
     return fail(ExitCode::kUnreadableInput,
                 "the domain has " + with_separators(domain.arcs.size()) + " arcs, of which " +
-                    with_separators(kMostArcs) + " are projected at most");
+                    with_separators(kMaxArcs) + " are projected at most");
   flatten_arcs(domain);  // what is a circle in degrees is none in the plane
   const auto extent = lonlat_extent(domain);
   if (!extent) return tl::unexpected(extent.error());

@@ -87,7 +87,7 @@ void find_range(std::vector<Arc>& arcs, LonLatExtent& extent) {
 }
 
 // At most so many points stand for all of them, because each is read several times.
-constexpr std::size_t kMostPoints = 10'000;
+constexpr std::size_t kMaxPoints = 10'000;
 
 struct Candidate {
   std::string parameters;
@@ -212,7 +212,7 @@ Result<LonLatExtent> lonlat_extent(const Domain& domain) {
 }
 
 Result<std::string> suitable_projection(const Domain& domain, const LonLatExtent& extent) {
-  const std::size_t stride = 1 + (domain.points.size() - 1) / kMostPoints;
+  const std::size_t stride = 1 + (domain.points.size() - 1) / kMaxPoints;
   double best = std::numeric_limits<double>::infinity();
   std::string parameters;
   for (const Candidate& candidate : candidates(extent)) {

@@ -9,7 +9,7 @@ namespace weft::server {
 namespace {
 
 // A body may be this much larger than the largest message, because of its frames.
-constexpr std::uint64_t kMostFraming = 4096;
+constexpr std::uint64_t kMaxFraming = 4096;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ std::optional<Failure> CallBody::add(std::string_view bytes) {
     unread_ = decoded_;
   }
   bytes_ += unread_.size();
-  if (bytes_ > most_bytes_ + kMostFraming)
+  if (bytes_ > most_bytes_ + kMaxFraming)
     return Failure{Reason::kLimitExceeded, "",
                    fmt::format("the request has more than {} bytes", most_bytes_)};
   return std::nullopt;

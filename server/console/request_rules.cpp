@@ -108,8 +108,8 @@ bool is_metadata(std::string_view name) {
 }
 
 std::optional<std::chrono::nanoseconds> parse_timeout(std::string_view text) {
-  constexpr std::size_t kMostDigits = 8;
-  if (text.size() < 2 || text.size() > kMostDigits + 1) return std::nullopt;
+  constexpr std::size_t kMaxDigits = 8;
+  if (text.size() < 2 || text.size() > kMaxDigits + 1) return std::nullopt;
   std::int64_t count = 0;
   const char* const unit = text.data() + text.size() - 1;
   const auto [stop, error] = std::from_chars(text.data(), unit, count);

@@ -39,9 +39,9 @@ namespace http = boost::beast::http;
 using boost::system::error_code;
 using tcp = boost::asio::ip::tcp;
 
-constexpr std::uint32_t kMostHeaderBytes = 16 << 10;  // the request line and all headers
+constexpr std::uint32_t kMaxHeaderBytes = 16 << 10;  // the request line and all headers
 constexpr std::size_t kWindow = std::size_t{64} << 10;
-constexpr std::size_t kMostMessagesAhead = 1;
+constexpr std::size_t kMaxMessagesAhead = 1;
 // How long a browser may take to see the answer to a request that was not read to its end.
 constexpr std::chrono::seconds kLinger{5};
 
@@ -120,7 +120,7 @@ class HttpSession final : public Session,
   const std::list<Session*>::iterator place_;
   State state_ = State::kIdle;
   std::string certificate_name_;
-  beast::flat_buffer buffer_{kMostHeaderBytes + kWindow};
+  beast::flat_buffer buffer_{kMaxHeaderBytes + kWindow};
   bool watching_ = false;  // a read waits for the next request, or for the browser to close
 
   std::optional<Parser> parser_;
@@ -219,7 +219,7 @@ void HttpSession::read_header() {
   keep_ = true;
   origin_ = PageOrigin::kOwn;
   parser_.emplace();
-  parser_->header_limit(kMostHeaderBytes);
+  parser_->header_limit(kMaxHeaderBytes);
   parser_->body_limit(std::numeric_limits<std::uint64_t>::max());  // take_body counts
   expire_in(context_.times.header);
   http::async_read_header(
@@ -564,7 +564,7 @@ std::string HttpSession::response_head() const {
 void HttpSession::write_next() {
   if (writing_ || state_ != State::kAnswering || !answer_->has_next()) return;
   write_out(answer_->next(answer_->begun() ? std::string() : response_head()));
-  if (call_ != nullptr && answer_->waiting() < kMostMessagesAhead) call_->read();
+  if (call_ != nullptr && answer_->waiting() < kMaxMessagesAhead) call_->read();
 }
 
 void HttpSession::write_out(std::vector<asio::const_buffer> buffers) {

@@ -55,8 +55,8 @@ std::string type_of(std::string_view value) {
 
 // What the first bytes of a file look like.
 std::string sniffed(std::string_view bytes) {
-  constexpr std::size_t kMost = 4096;
-  std::string text = files::lower_case(bytes.substr(0, kMost));
+  constexpr std::size_t kMax = 4096;
+  std::string text = files::lower_case(bytes.substr(0, kMax));
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
   if (text.starts_with("autocad binary dxf")) return ".dxf";
   text.erase(0, std::min(text.find_first_not_of(" \t\r\n"), text.size()));

@@ -20,12 +20,12 @@ namespace http = boost::beast::http;
 constexpr std::uint64_t kBytesOfShortFile = std::uint64_t{4} << 20;
 // Meshes that are written in some milliseconds.
 constexpr std::uint64_t kShortMesh = 50'000;
-constexpr std::size_t kMostWarnings = 16;
+constexpr std::size_t kMaxWarnings = 16;
 
 // The name of a file, from what may be any text.
 std::string harmless_name(const std::string& text) {
-  constexpr std::size_t kMost = 100;
-  std::string name = std::filesystem::path(text).filename().string().substr(0, kMost);
+  constexpr std::size_t kMax = 100;
+  std::string name = std::filesystem::path(text).filename().string().substr(0, kMax);
   for (char& c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '-') c = '_';
   return name;
@@ -33,8 +33,8 @@ std::string harmless_name(const std::string& text) {
 
 // A header's value: one line of ASCII.
 std::string one_line(std::string text) {
-  constexpr std::size_t kMost = 400;
-  if (text.size() > kMost) text.resize(kMost);
+  constexpr std::size_t kMax = 400;
+  if (text.size() > kMax) text.resize(kMax);
   for (char& c : text)
     if (c < ' ' || c > '~') c = c == '\n' ? ' ' : '?';
   return text;
@@ -65,9 +65,9 @@ void add_warnings(const v1::Summary& summary, const SentDomain& sent, std::uint6
 }
 
 void warn(std::vector<std::string> warnings, Response& head) {
-  if (warnings.size() > kMostWarnings) {
-    const std::size_t more = warnings.size() - (kMostWarnings - 1);
-    warnings.resize(kMostWarnings - 1);
+  if (warnings.size() > kMaxWarnings) {
+    const std::size_t more = warnings.size() - (kMaxWarnings - 1);
+    warnings.resize(kMaxWarnings - 1);
     warnings.push_back(fmt::format("{} more warnings", more));
   }
   for (const std::string& warning : warnings) head.insert("Weft-Warning", one_line(warning));

@@ -62,9 +62,9 @@ std::function<std::string(const std::string&, MeshWish&)> one_of(
 // An EPSG code: PROJ opens files that other names ask for.
 std::string read_crs(const std::string& text, MeshWish& wish) {
   constexpr std::string_view kStart = "EPSG:";
-  constexpr std::size_t kMostDigits = 6;
+  constexpr std::size_t kMaxDigits = 6;
   const std::string code = text.substr(std::min(kStart.size(), text.size()));
-  if (!text.starts_with(kStart) || code.empty() || code.size() > kMostDigits ||
+  if (!text.starts_with(kStart) || code.empty() || code.size() > kMaxDigits ||
       code.find_first_not_of("0123456789") != std::string::npos)
     return in_quotes(text) + " is not a code such as EPSG:32618";
   wish.projection.crs = text;
@@ -256,9 +256,9 @@ std::vector<Parameter> own_parameters() {
        Use::kWaiting,
        "",
        [](const std::string& text, MeshWish& wish) {
-         constexpr double kMost = 1e9;
+         constexpr double kMax = 1e9;
          wish.timeout = value_of<double>(text);
-         const bool good = wish.timeout && *wish.timeout > 0 && *wish.timeout <= kMost;
+         const bool good = wish.timeout && *wish.timeout > 0 && *wish.timeout <= kMax;
          return good ? "" : in_quotes(text) + " is not in the range above 0 to 1e9";
        }},
       {"request_id",

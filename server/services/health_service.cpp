@@ -15,10 +15,10 @@ namespace {
 
 using google::protobuf::internal::WireFormatLite;
 
-constexpr std::size_t kMostBytes = 1024;
+constexpr std::size_t kMaxBytes = 1024;
 // Each watch holds a stream, for a caller that nobody knows.
-constexpr std::size_t kMostWatches = 1024;
-constexpr std::ptrdiff_t kMostWatchesOfClient = 64;
+constexpr std::size_t kMaxWatches = 1024;
+constexpr std::ptrdiff_t kMaxWatchesOfClient = 64;
 // HealthCheckRequest.service, and HealthCheckResponse.status with its values.
 constexpr std::uint32_t kServiceTag =
     WireFormatLite::MakeTag(1, WireFormatLite::WIRETYPE_LENGTH_DELIMITED);
@@ -90,8 +90,8 @@ HealthService::HealthService(Admission& admission)
     };
   };
   constexpr bool kUngated = false;  // a server that drains is asked, too
-  add({"Check", kMostBytes, asked(&HealthService::check), true}, kUngated);
-  add({"Watch", kMostBytes, asked(&HealthService::watch), true}, kUngated);
+  add({"Check", kMaxBytes, asked(&HealthService::check), true}, kUngated);
+  add({"Watch", kMaxBytes, asked(&HealthService::watch), true}, kUngated);
 }
 
 HealthService::~HealthService() = default;
@@ -136,13 +136,13 @@ void HealthService::watch(const AdmittedCall& call, const std::string& service) 
   char first = 0;
   {
     std::lock_guard lock(mutex_);
-    if (watches_.size() >= kMostWatches)
+    if (watches_.size() >= kMaxWatches)
       return call.call->finish({grpc::RESOURCE_EXHAUSTED, "too many watch already"});
     const auto all = watches_.all();
     const auto is_of_client = [client = call.caller.client()](const auto& other) {
       return other->caller().client() == client;
     };
-    if (std::ranges::count_if(all, is_of_client) >= kMostWatchesOfClient)
+    if (std::ranges::count_if(all, is_of_client) >= kMaxWatchesOfClient)
       return call.call->finish({grpc::RESOURCE_EXHAUSTED, "you watch too often already"});
     first = status_of(serving_, service);
     watch = std::make_shared<Watch>(*this, call, service, first);

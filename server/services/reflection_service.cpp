@@ -24,7 +24,7 @@ using google::protobuf::DescriptorPool;
 using google::protobuf::FileDescriptor;
 
 // Each conversation is a stream that its client may leave open.
-constexpr std::size_t kMostConversations = 64;
+constexpr std::size_t kMaxConversations = 64;
 constexpr std::chrono::seconds kLongestConversation{60};
 
 void add_with_imports(const FileDescriptor& file, std::set<const FileDescriptor*>& seen,
@@ -141,7 +141,7 @@ void ReflectionService::converse(AdmittedCall& call) {
   std::shared_ptr<Conversation> conversation;
   {
     std::lock_guard lock(mutex_);
-    if (open_.size() < kMostConversations) {
+    if (open_.size() < kMaxConversations) {
       conversation = std::make_shared<Conversation>(*this, call);
       open_.emplace(conversation.get(), conversation);
     }

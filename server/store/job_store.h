@@ -167,8 +167,8 @@ inline constexpr std::chrono::milliseconds kLongestDelay{60'000};
 
 // The time from the end of this attempt to the next.
 constexpr std::chrono::milliseconds delay_after(const RetryPolicy& policy, std::uint32_t attempt) {
-  constexpr std::uint32_t kMostDoublings = 16;
-  const std::uint32_t doublings = std::min(std::max(attempt, 1u) - 1, kMostDoublings);
+  constexpr std::uint32_t kMaxDoublings = 16;
+  const std::uint32_t doublings = std::min(std::max(attempt, 1u) - 1, kMaxDoublings);
   return std::min(policy.first_delay * (std::int64_t{1} << doublings), kLongestDelay);
 }
 

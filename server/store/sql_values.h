@@ -32,8 +32,8 @@ inline std::int64_t to_micros(std::chrono::microseconds duration) {
 
 // The number, limited to SQL's largest integer.
 inline std::int64_t to_sql(std::uint64_t number) {
-  constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
-  return static_cast<std::int64_t>(std::min(number, kMost));
+  constexpr auto kMax = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  return static_cast<std::int64_t>(std::min(number, kMax));
 }
 inline std::uint64_t to_unsigned(std::int64_t number) {
   return static_cast<std::uint64_t>(number);

@@ -16,7 +16,7 @@
 namespace weft::server {
 
 // Chunks number vertices and triangles with 32 bits, and a mesh has more triangles than vertices.
-inline constexpr std::uint64_t kMostTriangles = 4'294'967'295;
+inline constexpr std::uint64_t kMaxTriangles = 4'294'967'295;
 
 struct Limits {
   std::uint64_t max_points = 5'000'000;
@@ -24,7 +24,7 @@ struct Limits {
   std::uint64_t max_seeds = 100'000;  // holes, regions and areas together
   std::uint64_t max_expression_bytes = kMaxExpressionBytes;
   std::uint64_t max_raster_values = std::uint64_t{1} << 24;
-  std::uint64_t max_triangles = kMostTriangles;
+  std::uint64_t max_triangles = kMaxTriangles;
   std::uint64_t max_bytes = std::uint64_t{4} << 30;      // of engine memory per run
   double max_seconds = 3600;                             // of work per run
   std::uint64_t stream_buffer = std::uint64_t{8} << 20;  // of a mesh that waits for its reader

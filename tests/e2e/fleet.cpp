@@ -20,7 +20,7 @@
 namespace weft::e2e {
 namespace {
 
-constexpr int kMostJobs = 1000;  // of one test
+constexpr int kMaxJobs = 1000;  // of one test
 
 std::string digest_of_mesh(v1::JobService::Stub& stub, const std::string& id) {
   v1::FetchMeshRequest request;
@@ -35,7 +35,7 @@ std::string digest_of_mesh(v1::JobService::Stub& stub, const std::string& id) {
 
 int count(v1::JobService::Stub& stub) {
   v1::ListJobsRequest request;
-  request.set_page_size(kMostJobs);
+  request.set_page_size(kMaxJobs);
   grpc::ClientContext context;
   v1::ListJobsResponse response;
   EXPECT_TRUE(stub.ListJobs(&context, request, &response).ok());
@@ -144,7 +144,7 @@ std::optional<int> Jobs::ended(const std::string& address) {
   for (const v1::JobState state :
        {v1::JOB_STATE_SUCCEEDED, v1::JOB_STATE_FAILED, v1::JOB_STATE_CANCELLED})
     request.add_states(state);
-  request.set_page_size(kMostJobs);
+  request.set_page_size(kMaxJobs);
   grpc::ClientContext context;
   v1::ListJobsResponse response;
   const auto stub = v1::JobService::NewStub(connect(address));

@@ -54,7 +54,7 @@ TEST_F(LargeFiles, TakeNoMoreMemoryThanSmallOnes) {
 #endif
   // In memory or mapped and kept, the arrays alone are 160 MB, and 320 MB for edges, besides the 55
   // to 117 MiB that a weft takes, or 134 MiB for a picture.
-  constexpr std::uint64_t kMost = 180 << 20;
+  constexpr std::uint64_t kMax = 180 << 20;
   constexpr std::uint64_t kOfPicture = 16 * 1800 * 1800;  // sums of values, colours
   const std::vector<std::vector<std::string>> outputs = {
       {"-o", file("m.vtu")},    {"-o", file("m.npz")},
@@ -65,7 +65,7 @@ TEST_F(LargeFiles, TakeNoMoreMemoryThanSmallOnes) {
   for (const auto& output : outputs) {
     const Outcome outcome = run_weft(mesh(output));
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_LT(outcome.peak_bytes, kMost + (output[0] == "--draw" ? kOfPicture : 0)) << output[1];
+    EXPECT_LT(outcome.peak_bytes, kMax + (output[0] == "--draw" ? kOfPicture : 0)) << output[1];
     std::filesystem::remove(output[1]);
   }
 }

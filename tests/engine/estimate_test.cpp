@@ -202,9 +202,9 @@ TEST(Estimate, IsAtMostWhatTheRunMayTake) {
 }
 
 TEST(Estimate, OfARequestThatMakesNoSenseIsFinite) {
-  constexpr std::uint64_t kMost = std::uint64_t{4} << 30;
+  constexpr std::uint64_t kMax = std::uint64_t{4} << 30;
   const auto is_finite = [&](const MeshRequest& request) {
-    return estimate(request, {.triangle_limit = kMost, .max_bytes = kMost}).bytes <= kMost;
+    return estimate(request, {.triangle_limit = kMax, .max_bytes = kMax}).bytes <= kMax;
   };
   for (const char* expression : {"0", "-1", "1/0", "sqrt(-1)", "x +"})
     EXPECT_TRUE(is_finite(square(expression))) << expression;

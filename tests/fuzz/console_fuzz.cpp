@@ -25,7 +25,7 @@ namespace {
 using namespace server;
 using namespace std::string_view_literals;
 
-constexpr std::uint64_t kMost = 64;
+constexpr std::uint64_t kMax = 64;
 constexpr std::uint64_t kBudget = 128;
 
 struct Reading {
@@ -49,7 +49,7 @@ Reading read(std::string_view bytes, std::size_t piece) {
   ByteBudget budget(kBudget);
   Reading reading;
   {
-    FrameReader reader(kMost, budget);
+    FrameReader reader(kMax, budget);
     while (!bytes.empty() && reading.failure.empty()) {
       std::string_view part = bytes.substr(0, piece);
       bytes.remove_prefix(part.size());
@@ -84,7 +84,7 @@ void judge(const std::uint8_t* data, std::size_t size) {
   must(whole.failure != "the budget is not whole", "budget", whole.failure);
   std::size_t at = 0;
   for (const std::string& message : whole.messages) {
-    must(message.size() <= kMost, "limit", message);
+    must(message.size() <= kMax, "limit", message);
     must(bytes.substr(at + kFrameHeader, message.size()) == message, "frames", message);
     at += kFrameHeader + message.size();
   }

@@ -129,7 +129,7 @@ void judge(const std::uint8_t* data, std::size_t size, Arena& arena) {
   }
   // Three threads take more memory than one.
   Budget budget = made.budget;
-  if (one || one.error().code != ErrorCode::kBudgetExceeded) budget.max_bytes = kMostBytes;
+  if (one || one.error().code != ErrorCode::kBudgetExceeded) budget.max_bytes = kMaxBytes;
   ExecutionContext on_three(budget);
   on_three.set_arena(arena, kThreads);
   NoSink no_sink;

@@ -12,7 +12,7 @@
 namespace weft::fuzz {
 namespace {
 
-constexpr std::size_t kMostPoints = 40;
+constexpr std::size_t kMaxPoints = 40;
 
 template <class... Values>
 std::string print(const char* format, Values... values) {
@@ -34,7 +34,7 @@ class PslgMaker {
     pslg_.fill = fill == 1 ? Fill::kEvenOdd : fill == 2 ? Fill::kUnion : Fill::kSeeds;
     const std::size_t seeds = bytes_.byte();
     if (bytes_.below(4) != 3) add_box();
-    while (bytes_.left() > 2 * seeds % 16 && points_.size() < kMostPoints) add_point();
+    while (bytes_.left() > 2 * seeds % 16 && points_.size() < kMaxPoints) add_point();
     for (std::size_t i = 0; fill == 2 && i < 1 + seeds / 16 % 4; ++i) add_area();
     for (std::size_t i = 0; i < seeds % 4; ++i) pslg_.holes.push_back(placed(seed()));
     for (std::size_t i = 0; i < seeds / 4 % 4; ++i) add_region();
@@ -455,8 +455,8 @@ MeshCase decode_mesh_case(ByteSource bytes) {
   const bool has_size =
       !std::holds_alternative<std::monostate>(request.size.value) || !request.size.at.empty();
   const bool is_small = has_size && bounds / kAngles.size() % 8 != 1;
-  made.budget.triangle_limit = is_small ? kFewTriangles : kMostTriangles;
-  made.budget.max_bytes = is_small ? kFewBytes : kMostBytes;
+  made.budget.triangle_limit = is_small ? kFewTriangles : kMaxTriangles;
+  made.budget.max_bytes = is_small ? kFewBytes : kMaxBytes;
   return made;
 }
 

@@ -25,8 +25,8 @@ struct MeshCase {
 
 // What a case may take: beyond it the engine refuses or stops. The largest take about 40 ms with
 // sanitizers, as much as a hundred others, so most cases with a size get the small budget.
-inline constexpr std::uint64_t kMostTriangles = 3000;
-inline constexpr std::uint64_t kMostBytes = 8 << 20;  // steep sizes build large trees
+inline constexpr std::uint64_t kMaxTriangles = 3000;
+inline constexpr std::uint64_t kMaxBytes = 8 << 20;  // steep sizes build large trees
 inline constexpr std::uint64_t kFewTriangles = 1000;
 inline constexpr std::uint64_t kFewBytes = 2 << 20;  // less than a local width takes
 

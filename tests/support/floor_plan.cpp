@@ -42,11 +42,11 @@ class Draughtsman {
 
   // Splits a room by a partition across it, then both halves.
   void divide(double x0, double y0, double x1, double y1, int depth) {
-    constexpr double kLeast = 2;
+    constexpr double kMin = 2;
     const bool upright = x1 - x0 > y1 - y0;
     const double extent = upright ? x1 - x0 : y1 - y0;
-    if (depth == 0 || extent < 2 * kLeast) return furnish(x0, y0, x1, y1);
-    const double at = (upright ? x0 : y0) + kLeast + (extent - 2 * kLeast) * unit();
+    if (depth == 0 || extent < 2 * kMin) return furnish(x0, y0, x1, y1);
+    const double at = (upright ? x0 : y0) + kMin + (extent - 2 * kMin) * unit();
     // Some partitions are not at right angles to the walls that they end on.
     const double slant = random_() % 4 == 0 ? (unit() - 0.5) : 0;
     const double from = at, to = at + slant;

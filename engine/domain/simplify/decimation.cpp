@@ -210,11 +210,11 @@ class Decimation {
 
   // What taking the node out costs; nullopt if it must stay.
   std::optional<double> cost_of(std::uint32_t v) {
-    constexpr std::uint32_t kLeastRing = 3;
+    constexpr std::uint32_t kMinRing = 3;
     const Node& node = chains_.nodes[v];
     const std::uint32_t u = node.before, w = node.after;
     const Chain& chain = chains_.chains[node.chain];
-    if (chain.is_ring && chain.length <= kLeastRing) return std::nullopt;
+    if (chain.is_ring && chain.length <= kMinRing) return std::nullopt;
     if (is_joined(u, w)) return std::nullopt;
     const double allowed = share_ * least_finest(u, w);
     if (!(allowed > 0)) return std::nullopt;

@@ -121,7 +121,7 @@ class Narrowing {
 
   // Returns whether lines were divided.
   bool make_dense() {
-    constexpr double kMostParts = 1e6;
+    constexpr double kMaxParts = 1e6;
     std::vector<std::uint32_t> parts(graph_.lines.size(), 1);
     bool any = false;
     for (std::uint32_t t = 0; t < region_.size(); ++t) {
@@ -131,7 +131,7 @@ class Narrowing {
         if (l == kNone) continue;
         const GraphLine& line = graph_.lines[l];
         const double length = distance(graph_.points[line.a], graph_.points[line.b]);
-        const double wanted = std::min(std::ceil(2 * length / finest(t)), kMostParts);
+        const double wanted = std::min(std::ceil(2 * length / finest(t)), kMaxParts);
         parts[l] = std::max(parts[l], static_cast<std::uint32_t>(wanted));
         any = any || parts[l] > 1;
       }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPrecision = 1.0 / 16;  // of a distance
 // Of the parts of a triangle: what takes more is far larger than what narrow places hold.
-constexpr int kMostLooks = 4096;
+constexpr int kMaxLooks = 4096;
 
 Point middle(Point a, Point b) {
   return {(a.x + b.x) / 2, (a.y + b.y) / 2};
@@ -123,7 +123,7 @@ bool NearLines::find_near(const Asked& asked) const {
         distance(centre, within, asked.marker, within - radius - kRounding * within, line);
     if (off + radius <= within) return true;
     if (off < within && is_near_line(line, {a, b, c})) return true;
-    if (off >= within || radius < kPrecision * within || ++looks > kMostLooks) return false;
+    if (off >= within || radius < kPrecision * within || ++looks > kMaxLooks) return false;
     const Point ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
     return self(self, ab, bc, ca) && self(self, a, ab, ca) && self(self, ab, b, bc) &&
            self(self, ca, bc, c);

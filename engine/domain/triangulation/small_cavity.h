@@ -30,9 +30,9 @@ namespace weft {
 
 class SmallCavity {
  public:
-  static constexpr std::uint32_t kMostFaces = 60;
+  static constexpr std::uint32_t kMaxFaces = 60;
 
-  // Returns false if the cavity has more than kMostFaces faces or an infinite one: then its faces
+  // Returns false if the cavity has more than kMaxFaces faces or an infinite one: then its faces
   // and border are not valid.
   // REQUIRES: face `first` is in conflict with p, and p is not at a vertex.
   bool find(const Face* faces, const Point* points, Point p, std::uint32_t first) {
@@ -190,7 +190,7 @@ class SmallCavity {
         --above;
         continue;
       }
-      if (size == kMostFaces || is_at_hull_) [[unlikely]]
+      if (size == kMaxFaces || is_at_hull_) [[unlikely]]
         return false;
       const std::uint32_t f = frame.outside >> 2;
       const int i = static_cast<int>(frame.outside & 3);
@@ -213,9 +213,9 @@ class SmallCavity {
   bool is_at_hull_ = false;
   std::uint32_t size_ = 0;
   double nearest2_ = 0;
-  Frame frames_[kMostFaces + 2];
-  std::uint32_t cavity_[kMostFaces + 3];
-  Border border_[kMostFaces + 3];
+  Frame frames_[kMaxFaces + 2];
+  std::uint32_t cavity_[kMaxFaces + 3];
+  Border border_[kMaxFaces + 3];
 };
 
 }  // namespace weft

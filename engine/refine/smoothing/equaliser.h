@@ -45,7 +45,7 @@ class Equaliser {
       : mesh_(refinement.mesh),
         context_(refinement.context),
         star_(refinement, quality.eased(), std::move(area)),
-        cost_(std::max(kLeastSin2, static_cast<float>(quality.sin2))) {}
+        cost_(std::max(kMinSin2, static_cast<float>(quality.sin2))) {}
 
   // As VertexStar::begin.
   void begin(const Ownership& ownership, const Box& box, std::uint32_t first_free,
@@ -83,9 +83,9 @@ class Equaliser {
 
  private:
   using Star = VertexStar<Ownership, AreaBound>;
-  static_assert(StarCost::kMostEdges == Star::kMostEdges);
+  static_assert(StarCost::kMaxEdges == Star::kMaxEdges);
 
-  static constexpr float kLeastSin2 = 0.1786F;  // of 25 degrees
+  static constexpr float kMinSin2 = 0.1786F;  // of 25 degrees
 
   std::optional<Error> poll() const {
     if (const auto& bad = star_.area().bad_size()) return bad_size_error(*bad);
@@ -103,7 +103,7 @@ class Equaliser {
     for (std::uint32_t i = 0; i < star_.size(); ++i) cost_.set_bound(i, bound[i]);
     const auto place = cost_.search();
     if (!place) return;
-    std::array<double, Star::kMostEdges> doubled{};
+    std::array<double, Star::kMaxEdges> doubled{};
     for (std::uint32_t i = 0; i < star_.size(); ++i) doubled[i] = 2 * slack_ * bound[i];
     for (const double part : {1.0, 0.4}) {
       const Point to{from.x + part * place->x, from.y + part * place->y};
@@ -152,7 +152,7 @@ class Equaliser {
   double slack_ = 1;
   AreaBatch batch_;
   std::vector<double> bound_;  // per slot of the owner, before this sweep
-  std::array<double, Star::kMostEdges> of_star_{};
+  std::array<double, Star::kMaxEdges> of_star_{};
   VertexSet seen_;  // of this sweep
   std::vector<std::uint32_t> touched_;
 };

@@ -89,10 +89,10 @@ class Smoother {
 
  private:
   using Corner = typename VertexStar<Ownership, AreaBound>::Corner;
-  static_assert(StarSearch::kMostEdges == VertexStar<Ownership, AreaBound>::kMostEdges);
+  static_assert(StarSearch::kMaxEdges == VertexStar<Ownership, AreaBound>::kMaxEdges);
 
   static constexpr double kPoor = StarSearch::kGoodEnough;
-  static constexpr float kLeastGain = 1.01F;
+  static constexpr float kMinGain = 1.01F;
   static constexpr std::size_t kPollInterval = 256;  // stars
 
   std::optional<Error> poll() const {
@@ -125,7 +125,7 @@ class Smoother {
     begin_search();
     const StarSearch::Place best = search_.search();
     const Point centre = star_.centre();
-    if (best.gain > kLeastGain) star_.move({centre.x + best.x, centre.y + best.y});
+    if (best.gain > kMinGain) star_.move({centre.x + best.x, centre.y + best.y});
     for (std::uint32_t i = 0; again && i < star_.size(); ++i) {
       if (poor(mesh_.triangles[star_.triangle(i)])) queue_corners(star_.triangle(i));
     }

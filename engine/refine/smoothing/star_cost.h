@@ -30,7 +30,7 @@ namespace weft {
 
 class StarCost {
  public:
-  static constexpr std::uint32_t kMostEdges = 16;  // of a link
+  static constexpr std::uint32_t kMaxEdges = 16;  // of a link
 
   // Angles whose squared sine is below this cost extra.
   explicit StarCost(float least_sin2) : least_sin2_(least_sin2) {}
@@ -126,9 +126,9 @@ class StarCost {
   std::uint32_t size_ = 0;
   double edge_ = 1;
   double per_edge_ = 1;
-  float x_[kMostEdges + 1] = {};  // of the link, relative to the vertex, in edges
-  float y_[kMostEdges + 1] = {};
-  float per_bound_[kMostEdges] = {};  // of doubled areas
+  float x_[kMaxEdges + 1] = {};  // of the link, relative to the vertex, in edges
+  float y_[kMaxEdges + 1] = {};
+  float per_bound_[kMaxEdges] = {};  // of doubled areas
 };
 
 }  // namespace weft

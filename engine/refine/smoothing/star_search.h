@@ -27,7 +27,7 @@ namespace weft {
 
 class StarSearch {
  public:
-  static constexpr std::uint32_t kMostEdges = 16;  // of a link
+  static constexpr std::uint32_t kMaxEdges = 16;  // of a link
   // The squared sine of 48 degrees: the worth at which a star is good enough.
   static constexpr float kGoodEnough = 0.5523F;
 
@@ -149,10 +149,10 @@ class StarSearch {
   std::uint32_t size_ = 0;
   double edge_ = 1;
   double per_edge_ = 1;
-  float x_[kMostEdges + 1] = {};  // of the link, relative to the vertex, in edges
-  float y_[kMostEdges + 1] = {};
-  float edge2_[kMostEdges] = {};
-  float bound_[kMostEdges] = {};  // doubled, as areas are
+  float x_[kMaxEdges + 1] = {};  // of the link, relative to the vertex, in edges
+  float y_[kMaxEdges + 1] = {};
+  float edge2_[kMaxEdges] = {};
+  float bound_[kMaxEdges] = {};  // doubled, as areas are
 };
 
 }  // namespace weft

@@ -45,8 +45,8 @@ namespace weft {
 template <class Ownership, class AreaBound>
 class VertexStar {
  public:
-  static constexpr std::uint32_t kMostEdges = 16;  // of a link; a larger star is not found
-  static_assert(kMostEdges % SizeFunction::kLanes == 0);
+  static constexpr std::uint32_t kMaxEdges = 16;  // of a link; a larger star is not found
+  static_assert(kMaxEdges % SizeFunction::kLanes == 0);
 
   // A vertex, and a triangle of its star.
   struct Corner {
@@ -59,7 +59,7 @@ class VertexStar {
         regions_(refinement.regions),
         quality_(quality),
         area_(std::move(area)),
-        ring_(kMostEdges) {}
+        ring_(kMaxEdges) {}
 
   // Begins a task in `box`. Vertices below `first_free`, and those of owners below `first_owner`,
   // stay where they are.
@@ -85,7 +85,7 @@ class VertexStar {
     std::uint32_t t = corner.triangle;
     if (!owns(mesh_.triangles[t])) return false;
     do {
-      if (size_ == kMostEdges) return false;
+      if (size_ == kMaxEdges) return false;
       const Triangle& triangle = mesh_.triangles[t];
       const std::uint32_t k = corner_of(triangle);
       const Point start = mesh_.vertices[triangle.vertex[kNext[k]]];
@@ -247,17 +247,17 @@ class VertexStar {
   std::uint32_t vertex_ = 0;
   Point centre_;
   std::uint32_t size_ = 0;
-  std::array<std::uint32_t, kMostEdges> triangles_{};
-  std::array<double, kMostEdges + 1> x_{};  // of the link, relative to the centre
-  std::array<double, kMostEdges + 1> y_{};
+  std::array<std::uint32_t, kMaxEdges> triangles_{};
+  std::array<double, kMaxEdges + 1> x_{};  // of the link, relative to the centre
+  std::array<double, kMaxEdges + 1> y_{};
   struct alignas(64) {
-    double x[kMostEdges];
-    double y[kMostEdges];
-    double bound[kMostEdges];
+    double x[kMaxEdges];
+    double y[kMaxEdges];
+    double bound[kMaxEdges];
   } lanes_{};
   double region_bound_ = 0;
   Ring ring_;
-  std::array<Badness, kMostEdges> judged_{};
+  std::array<Badness, kMaxEdges> judged_{};
 };
 
 }  // namespace weft

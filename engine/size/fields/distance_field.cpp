@@ -24,7 +24,7 @@ constexpr std::uint64_t kListedBesides = std::uint64_t{1} << 16;
 // Far from the lines, lists are long where boxes are not small: of some ten thousand lines, on
 // which most domains have their distance, more may be listed.
 constexpr std::uint64_t kMoreListedPerLine = 32;
-constexpr std::uint64_t kMostListedBesides = std::uint64_t{1} << 18;
+constexpr std::uint64_t kMaxListedBesides = std::uint64_t{1} << 18;
 constexpr int kSubtreeLevel = 4;  // the level whose subtrees are built on many threads
 
 double largest(const Box& box) {
@@ -51,10 +51,10 @@ DistanceField::DistanceField(const Box& box)
 
 Result<DistanceField> DistanceField::make(std::vector<Line> lines, const DomainCover& cover,
                                           const ExecutionContext& context) {
-  if (lines.size() > kMostLines) {
+  if (lines.size() > kMaxLines) {
     return fail(ErrorCode::kLimitExceeded, "",
                 "a distance to " + std::to_string(lines.size()) + " lines; the limit is " +
-                    std::to_string(kMostLines));
+                    std::to_string(kMaxLines));
   }
   const std::uint64_t bytes = bytes_to_make(lines.size());
   if (auto error =
@@ -88,7 +88,7 @@ std::optional<Error> DistanceField::add_quadtree(const DomainCover& cover,
   ListBuilder top(*this, cover, kSubtreeLevel, context);
   ListBuilder::Pending root;
   root.allowed =
-      kListedPerLine * n + std::min(kListedBesides + kMoreListedPerLine * n, kMostListedBesides);
+      kListedPerLine * n + std::min(kListedBesides + kMoreListedPerLine * n, kMaxListedBesides);
   root.lines.resize(n);
   std::iota(root.lines.begin(), root.lines.end(), 0u);
   if (auto error = top.build(std::move(root))) return error;

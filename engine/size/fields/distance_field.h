@@ -50,12 +50,12 @@ class DistanceField final : public Field {
     constexpr std::uint64_t kMega = std::uint64_t{1} << 20;
     return 256 * lines + std::min(kMega * fields + 512 * lines, 4 * kMega * fields);
   }
-  static constexpr std::size_t kMostLines = std::size_t{1} << 27;
+  static constexpr std::size_t kMaxLines = std::size_t{1} << 27;
 
   // `cover` is where the field is asked for most: the domain's; elsewhere a value takes longer.
   // REQUIRES: one line at least; finite coordinates of magnitude up to 1e50; a box that is not
   // empty. The same field on any number of threads.
-  // Errors: kLimitExceeded for more than kMostLines; kBudgetExceeded; kCancelled,
+  // Errors: kLimitExceeded for more than kMaxLines; kBudgetExceeded; kCancelled,
   // kDeadlineExceeded.
   static Result<DistanceField> make(std::vector<Line> lines, const DomainCover& cover,
                                     const ExecutionContext& context);

@@ -25,12 +25,12 @@ struct StraightLine {
 
   // Drawn from left to right, so that a line has the same bits in both directions.
   static StraightLine between(Point a, Point b) {
-    constexpr double kLeastSquare = 0x1p-1000;  // what is shorter is a point
+    constexpr double kMinSquare = 0x1p-1000;  // what is shorter is a point
     if (b.x < a.x || (b.x == a.x && b.y < a.y)) std::swap(a, b);
     const double ux = b.x - a.x;
     const double uy = b.y - a.y;
     const double square = ux * ux + uy * uy;
-    return {a.x, a.y, ux, uy, square > kLeastSquare ? 1 / square : 0};
+    return {a.x, a.y, ux, uy, square > kMinSquare ? 1 / square : 0};
   }
   double square(Point p) const {
     const double wx = p.x - ax;

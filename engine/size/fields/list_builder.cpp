@@ -11,11 +11,11 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kNodeCost = 2;  // of a node, in entries of lists
 // A leaf lists at most so many lines, or so many per side of the leaf that they are away, because a
-// straight line of n pieces has n parallel cells. It never lists more than kMostInLeaf if they can
+// straight line of n pieces has n parallel cells. It never lists more than kMaxInLeaf if they can
 // be told apart.
 constexpr double kInLeaf = 8;
 constexpr double kInLeafPerSide = 2;
-constexpr double kMostInLeaf = 64;
+constexpr double kMaxInLeaf = 64;
 constexpr std::uint32_t kShort = 16;  // a list that is hardly slower than the tree
 // A look of the tree costs as much as so many lines of a list, which eight points share.
 constexpr std::uint32_t kLinesPerLook = 4;
@@ -151,7 +151,7 @@ void ListBuilder::add_leaf(const Pending& pending) {
 
 std::optional<Error> ListBuilder::split(Pending&& pending) {
   const double side = std::ldexp(2 * field_.root_, -pending.depth);
-  const double in_leaf = std::clamp(kInLeafPerSide * pending.distance / side, kInLeaf, kMostInLeaf);
+  const double in_leaf = std::clamp(kInLeafPerSide * pending.distance / side, kInLeaf, kMaxInLeaf);
   if (static_cast<double>(pending.lines.size()) <= in_leaf ||
       pending.depth == DistanceField::kMaxDepth) {
     add_leaf(pending);

@@ -18,7 +18,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kFlat = 0x1p-40;  // of the longest edge's square
 constexpr double kLargest = 1e50;  // coordinate
-constexpr std::size_t kMostTriangles = std::size_t{1} << 30;
+constexpr std::size_t kMaxTriangles = std::size_t{1} << 30;
 constexpr std::size_t kAtOnce = 1 << 14;
 
 // Twice the area.
@@ -82,10 +82,10 @@ std::optional<Error> MeshField::check(const std::string& path,
     return Error{ErrorCode::kBadOption, path + ".values",
                  path + ".values has " + std::to_string(mesh_.values.size()) + " values for " +
                      std::to_string(vertices) + " vertices; it must have one for each"};
-  if (mesh_.triangles.size() > kMostTriangles)
+  if (mesh_.triangles.size() > kMaxTriangles)
     return Error{ErrorCode::kBadOption, path + ".triangles",
                  path + ".triangles has " + std::to_string(mesh_.triangles.size()) +
-                     " triangles, the limit is " + std::to_string(kMostTriangles)};
+                     " triangles, the limit is " + std::to_string(kMaxTriangles)};
   for (std::size_t i = 0; i < vertices; ++i) {
     if (auto error = poll(i)) return error;
     const Point p = mesh_.vertices[i];

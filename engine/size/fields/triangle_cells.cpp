@@ -16,8 +16,8 @@ using List = std::vector<std::uint32_t>;
 constexpr std::uint64_t kListedPerTriangle = 12;
 constexpr std::uint64_t kListedBesides = 1 << 12;
 constexpr std::uint64_t kNodeCost = 2;
-constexpr std::size_t kInLeaf = 12;      // if it can be divided
-constexpr std::size_t kMostInLeaf = 32;  // a list that is hardly slower than the tree
+constexpr std::size_t kInLeaf = 12;     // if it can be divided
+constexpr std::size_t kMaxInLeaf = 32;  // a list that is hardly slower than the tree
 constexpr std::size_t kAtATime = 1 << 14;
 
 // The cells of the last level that a triangle's box meets.
@@ -85,7 +85,7 @@ class CellBuilder {
 
 void CellBuilder::add_leaf(const Pending& pending, std::size_t first) {
   const std::size_t count = stack_.size() - first;
-  if (count > kMostInLeaf) return;  // stays kTooMany
+  if (count > kMaxInLeaf) return;  // stays kTooMany
   nodes[pending.node] = {static_cast<std::uint32_t>(lists.size()),
                          static_cast<std::uint32_t>(count)};
   lists.insert(lists.end(), stack_.begin() + static_cast<std::ptrdiff_t>(first), stack_.end());

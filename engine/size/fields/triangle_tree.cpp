@@ -203,7 +203,7 @@ void TriangleTree::take_if_nearer(std::uint32_t place, Point p, Found& best) con
 TriangleTree::Found TriangleTree::nearest(Point p) const noexcept {
   Found best;
   Stack stack;
-  std::array<double, kMostLevels * kFan> distances;
+  std::array<double, kMaxLevels * kFan> distances;
   distances[0] = 0;
   stack.push(root());
   while (stack.size > 0) {

@@ -98,8 +98,8 @@ class TriangleTree {
   }
 
  private:
-  static constexpr std::size_t kMostLevels = 16;
-  static constexpr std::size_t kMostCovering = 64;  // items at a time
+  static constexpr std::size_t kMaxLevels = 16;
+  static constexpr std::size_t kMaxCovering = 64;  // items at a time
 
   // The boxes of four items, and the least number of a triangle in each.
   struct Quad {
@@ -112,7 +112,7 @@ class TriangleTree {
   };
   // For a search from the root: at most kFan - 1 wait at each level, and kFan at the last.
   struct Stack {
-    std::array<Item, kMostLevels * kFan> items;
+    std::array<Item, kMaxLevels * kFan> items;
     std::size_t size = 0;
     void push(Item item) { items[size++] = item; }
     Item pop() { return items[--size]; }
@@ -136,8 +136,8 @@ inline bool meet(const Box& a, const Box& b) {
 
 template <class TakeItem, class TakeTriangle>
 void TriangleTree::cover(const Box& box, const TakeItem& item, const TakeTriangle& triangle) const {
-  std::array<std::uint32_t, kMostCovering> now;
-  std::array<std::uint32_t, kMostCovering> next;
+  std::array<std::uint32_t, kMaxCovering> now;
+  std::array<std::uint32_t, kMaxCovering> next;
   std::size_t count = 1;
   now[0] = 0;
   for (std::size_t level = quads_.size(); level > 0; --level) {
@@ -151,7 +151,7 @@ void TriangleTree::cover(const Box& box, const TakeItem& item, const TakeTriangl
         if (child.min_x >= box.min_x && child.max_x <= box.max_x && child.min_y >= box.min_y &&
             child.max_y <= box.max_y) {
           item(level - 1, now[n] * kFan + k);
-        } else if (found == kMostCovering) {
+        } else if (found == kMaxCovering) {
           too_many = true;
         } else {
           next[found++] = now[n] * kFan + k;

@@ -38,7 +38,7 @@ class StepFinder {
   Result<std::vector<Step>> run(double farthest);
 
  private:
-  static constexpr std::size_t kMostPieces = std::size_t{1} << 14;
+  static constexpr std::size_t kMaxPieces = std::size_t{1} << 14;
   static constexpr int kMaxDepth = 48;
 
   struct Open {
@@ -109,7 +109,7 @@ Result<std::vector<BorderGradedSize::Step>> StepFinder::run(double farthest) {
     const Open at = open.back();
     open.pop_back();
     if (settle(at)) continue;
-    if (at.depth == kMaxDepth || pieces_.size() + open.size() > kMostPieces)
+    if (at.depth == kMaxDepth || pieces_.size() + open.size() > kMaxPieces)
       return std::vector<Step>();
     const double middle = at.from + 0.5 * (at.to - at.from);
     open.push_back({middle, at.to, at.depth + 1});

@@ -27,7 +27,7 @@ Hull::Hull(std::vector<Point> points) {
   for (std::size_t i = 0; i + 1 < ring.size(); ++i)
     lengths.emplace_back(-std::sqrt(distance2(ring[i], ring[i + 1])), i);
   std::sort(lengths.begin(), lengths.end());
-  lengths.resize(std::min(lengths.size(), kMostSides));
+  lengths.resize(std::min(lengths.size(), kMaxSides));
   for (const auto& [length, i] : lengths) {
     const Point normal{(ring[i + 1].y - ring[i].y) / -length, (ring[i + 1].x - ring[i].x) / length};
     // Taken over all corners of the hull, so that the rounding of the tests above does not matter.

@@ -19,7 +19,7 @@ class Hull {
   bool misses(const Box& box) const;
 
  private:
-  static constexpr std::size_t kMostSides = 64;
+  static constexpr std::size_t kMaxSides = 64;
 
   struct Side {
     Point normal;  // of length 1, outwards

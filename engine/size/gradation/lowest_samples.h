@@ -40,8 +40,8 @@ struct LowSample {
 };
 
 struct LowSamples {
-  static constexpr std::size_t kMost = 6;
-  std::array<LowSample, kMost> best;
+  static constexpr std::size_t kMax = 6;
+  std::array<LowSample, kMax> best;
   std::size_t count = 0;
 
   // Whether the cone of one of them is below `edge` all over the box.
@@ -62,8 +62,8 @@ class LowestSamples {
     if (!(height < std::numeric_limits<double>::infinity())) return;
     std::size_t place = found_.count;
     while (place > 0 && height < heights_[place - 1]) --place;
-    if (place == LowSamples::kMost) return;
-    found_.count = std::min(found_.count + 1, LowSamples::kMost);
+    if (place == LowSamples::kMax) return;
+    found_.count = std::min(found_.count + 1, LowSamples::kMax);
     for (std::size_t i = found_.count - 1; i > place; --i) {
       found_.best[i] = found_.best[i - 1];
       heights_[i] = heights_[i - 1];
@@ -77,7 +77,7 @@ class LowestSamples {
   Point at_;
   double gradation_;
   LowSamples found_;
-  std::array<double, LowSamples::kMost> heights_{};
+  std::array<double, LowSamples::kMax> heights_{};
 };
 
 }  // namespace weft

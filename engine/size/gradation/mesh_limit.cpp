@@ -72,7 +72,7 @@ class SlopeLimiter {
   double steepest() const;
 
  private:
-  static constexpr std::size_t kMostLooks = 40;  // per triangle
+  static constexpr std::size_t kMaxLooks = 40;  // per triangle
 
   double slope(std::uint32_t t) const;
   bool settle(std::uint32_t t);
@@ -153,7 +153,7 @@ Result<bool> SlopeLimiter::run(const ExecutionContext& context) {
     listed[t] = true;
   }
   for (std::size_t i = 0; !open.empty(); ++i) {
-    if (i > kMostLooks * mesh_.triangles.size()) return false;
+    if (i > kMaxLooks * mesh_.triangles.size()) return false;
     if (i % kPollInterval == 0) {
       if (auto error = context.poll()) return tl::unexpected(std::move(*error));
     }

@@ -15,7 +15,7 @@ std::vector<double> groups_of(std::vector<double> bounds) {
   std::vector<double> groups;
   if (bounds.empty()) return groups;
   const double range = std::log(bounds.back()) - std::log(bounds.front());
-  const double apart = std::max(kSame, std::exp(range / (kMostRegionBorders - 1)));
+  const double apart = std::max(kSame, std::exp(range / (kMaxRegionBorders - 1)));
   for (const double bound : bounds)
     if (groups.empty() || bound > apart * groups.back()) groups.push_back(bound);
   return groups;

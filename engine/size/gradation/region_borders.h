@@ -20,9 +20,9 @@ struct RegionBorders {
 };
 
 // One for each bound, the least first. Bounds that differ by less than 4 % count as one; if there
-// would be more than kMostRegionBorders, so do bounds that differ by more. A bound that no region
+// would be more than kMaxRegionBorders, so do bounds that differ by more. A bound that no region
 // exceeds has none.
-inline constexpr std::size_t kMostRegionBorders = 32;
+inline constexpr std::size_t kMaxRegionBorders = 32;
 std::vector<RegionBorders> region_borders(const Domain& domain);
 
 }  // namespace weft

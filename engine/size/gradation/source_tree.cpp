@@ -23,7 +23,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // More than the few operations of a comparison round.
 constexpr double kSlack = 1e-9;
 // The areas of edges below this are not normal numbers.
-constexpr double kLeastEdge = 1e-150;
+constexpr double kMinEdge = 1e-150;
 
 double diagonal(const Box& box) {
   return std::sqrt(box.width() * box.width() + box.height() * box.height());
@@ -179,7 +179,7 @@ SizeSample Builder::sample(const DomainBox& at, const std::uint32_t* triangles) 
     if (!(area[i] > 0)) continue;
     const double edge = SizeFunction::edge_of_area(area[i]);
     highest = std::max(highest, edge);
-    if (edge < kLeastEdge || edge >= best.edge) continue;
+    if (edge < kMinEdge || edge >= best.edge) continue;
     best.p = {x[i], y[i]};
     best.edge = edge;
   }
@@ -306,7 +306,7 @@ std::optional<Error> Builder::judge(const Level& level, const std::vector<Seen>&
     verdict.fate = Fate::kSource;
     verdict.box = shrunk(at, triangles);
     verdict.edge = edge.lo;
-    if (verdict.edge >= kLeastEdge) return std::nullopt;
+    if (verdict.edge >= kMinEdge) return std::nullopt;
     const SizeSample& sample = seen[slot].sample;
     verdict.box = {sample.p.x, sample.p.y, sample.p.x, sample.p.y};
     verdict.edge = sample.edge;

@@ -44,14 +44,14 @@ class ConformalMap {
   ConformalMap() = default;
 
   // The map for edges of length `scale` * exp(Re U) in the disk around a point. REQUIRES: the
-  // moduli of u[1] and up sum to at most kMostBend; Re u[0] is finite.
+  // moduli of u[1] and up sum to at most kMaxBend; Re u[0] is finite.
   ConformalMap(Point centre, double radius, const Exponent& u, double scale);
 
   // Up to this sum of the coefficients the series is long enough: the terms of F' that are left out
   // are of third order in u[5] and u[4], of fifth order in u[3], of higher order in the others, and
   // these fall with k. They change only the spacing; triangles are equilateral for any polynomial
   // F.
-  static constexpr double kMostBend = 1.5;
+  static constexpr double kMaxBend = 1.5;
 
   // F at a point, and its derivative in units of the plane.
   struct Value {

@@ -42,8 +42,8 @@ struct LatticeShape {
   // The shape for a bound on angles, in degrees.
   static LatticeShape for_angle(double min_angle_deg) {
     constexpr double kPerfect = 29.5;
-    constexpr double kMost = 31.5;
-    if (min_angle_deg > kMost) return {};
+    constexpr double kMax = 31.5;
+    if (min_angle_deg > kMax) return {};
     const double beyond = std::max(0.0, min_angle_deg - 30);
     const double jitter = min_angle_deg <= kPerfect ? 1e-4 : 0.01 + 0.05 * beyond;
     return {0.99 - 2.2 * jitter, jitter};
@@ -98,8 +98,8 @@ inline Complex nearest_of_lattice(Complex w, double jitter) {
 // The squared spacing of the lattice for a bound; 0 if this is not a size. REQUIRES: the shape
 // exists.
 inline double lattice_spacing2(double bound, const LatticeShape& shape) {
-  constexpr double kMostBound = 1e150;
-  return bound > 0 && bound < kMostBound ? shape.area_ratio * bound / kEquilateral : 0;
+  constexpr double kMaxBound = 1e150;
+  return bound > 0 && bound < kMaxBound ? shape.area_ratio * bound / kEquilateral : 0;
 }
 
 // The lattice for one bound everywhere, through the origin. It remembers the last bound.

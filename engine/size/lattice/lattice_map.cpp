@@ -87,10 +87,10 @@ class Surveyor {
 
  private:
   // Roots, squares and quotients of such sizes are normal numbers.
-  static constexpr double kLeastSize = 1e-150;
-  static constexpr double kMostSize = 1e150;
-  static constexpr double kMostRatio = 20;  // of the samples: no polynomial of degree 5 follows
-  static constexpr double kMostRows = 1e9;
+  static constexpr double kMinSize = 1e-150;
+  static constexpr double kMaxSize = 1e150;
+  static constexpr double kMaxRatio = 20;  // of the samples: no polynomial of degree 5 follows
+  static constexpr double kMaxRows = 1e9;
   static constexpr double kRootTwo = 1.4142135623730951;
 
   // A square's samples of the size: all of them, and the wanted edges where they are sizes.
@@ -101,8 +101,8 @@ class Surveyor {
     double y[Fitter::kSamples];
     double size[Fitter::kSamples];
     typename Fitter::Samples edges;
-    double lo = kMostSize;
-    double hi = kLeastSize;
+    double lo = kMaxSize;
+    double hi = kMinSize;
     bool all = true;  // are sizes
     bool any() const { return lo <= hi; }
   };
@@ -117,7 +117,7 @@ class Surveyor {
     size_.evaluate(Fitter::kSamples, at.x, at.y, at.size);
     for (std::size_t s = 0; s < Fitter::kSamples; ++s) {
       const double size = at.size[s];
-      if (!(size > kLeastSize && size < kMostSize)) {
+      if (!(size > kMinSize && size < kMaxSize)) {
         at.all = false;
         continue;
       }
@@ -153,13 +153,13 @@ class Surveyor {
       cell.kind = Kind::kStepped;
       return;
     }
-    // The indices of the lattice are exact far beyond kMostRows, and no mesh has so many rows.
-    if (!at.all || at.hi > kMostRatio * at.lo || !(rows < kMostRows)) return;
+    // The indices of the lattice are exact far beyond kMaxRows, and no mesh has so many rows.
+    if (!at.all || at.hi > kMaxRatio * at.lo || !(rows < kMaxRows)) return;
     if (!small && missed(size_.bounds(cell.box), at.lo, at.hi)) return;
 
     HarmonicFit fit = fitter.fit(at.edges);
     const double bend = fit.bend();
-    const double most_bend = small ? ConformalMap::kMostBend : LatticeMap::kFewBends;
+    const double most_bend = small ? ConformalMap::kMaxBend : LatticeMap::kFewBends;
     const double most = small ? LatticeMap::kAnyFit
                               : std::max(LatticeMap::kGoodFit, LatticeMap::kGoodFitRows / rows);
     if (!(bend < most_bend && fit.deviation() <= most)) return;

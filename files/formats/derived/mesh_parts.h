@@ -17,7 +17,7 @@
 
 namespace weft::files {
 
-inline constexpr std::uint32_t kMostParts = 1 << 16;
+inline constexpr std::uint32_t kMaxParts = 1 << 16;
 
 struct MeshParts {
   std::vector<std::int32_t> of;  // the part of each triangle, from 0

@@ -104,10 +104,10 @@ class Near {
   using Cell = std::pair<std::int64_t, std::int64_t>;
 
   Cell cell_of(Point p) const {
-    constexpr double kMost = 0x1p61;  // cells; farther points are near nothing
+    constexpr double kMax = 0x1p61;  // cells; farther points are near nothing
     const auto count = [&](double x) {
       const double cells = std::floor(x / cell_);  // NaN if both are too large or too small
-      return static_cast<std::int64_t>(std::fabs(cells) < kMost ? cells : kMost);
+      return static_cast<std::int64_t>(std::fabs(cells) < kMax ? cells : kMax);
     };
     return {count(p.x - origin_.x), count(p.y - origin_.y)};
   }

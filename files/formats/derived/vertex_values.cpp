@@ -14,8 +14,8 @@ namespace {
 
 // "'a', 'b' and 'c'"
 std::string listed(const std::vector<std::string>& arrays) {
-  constexpr std::size_t kMost = 16;
-  const std::size_t shown = std::min(arrays.size(), kMost);
+  constexpr std::size_t kMax = 16;
+  const std::size_t shown = std::min(arrays.size(), kMax);
   std::string list;
   for (std::size_t i = 0; i < shown; ++i) {
     if (i > 0) list += i + 1 == arrays.size() ? " and " : ", ";

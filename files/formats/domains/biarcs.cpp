@@ -15,7 +15,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr int kSamples = 7;              // of a piece, between its ends
 constexpr double kOfExtent = 2e-5;       // that a curve may leave its arcs by
 constexpr double kOfRadius = 1e-4;       // of the smaller arc
-constexpr double kLeastOfExtent = 1e-7;  // no nearer than this
+constexpr double kMinOfExtent = 1e-7;    // no nearer than this
 constexpr double kRounding = 1e-12;      // of the extent: an arc that is no higher is straight
 constexpr double kSameCurvature = 1e-9;  // times the distance between the ends
 constexpr double kStandsStill = 1e-9;    // of the extent: a tangent that says nothing
@@ -132,7 +132,7 @@ class Follower {
 
   // Or no number.
   bool is_point(Point a, Point b, const Samples& samples) const {
-    const auto is_near = [&](Point p) { return length(p - a) <= kLeastOfExtent * extent_; };
+    const auto is_near = [&](Point p) { return length(p - a) <= kMinOfExtent * extent_; };
     return !std::ranges::all_of(samples, is_usable, &CurvePoint::at) || !is_usable(b) ||
            (is_near(b) && std::ranges::all_of(samples, is_near, &CurvePoint::at));
   }
@@ -150,7 +150,7 @@ class Follower {
     const double curvature =
         std::max(std::abs(fit.first.curvature()), std::abs(fit.second.curvature()));
     const double allowed =
-        std::min(kOfExtent * extent_, std::max(kOfRadius / curvature, kLeastOfExtent * extent_));
+        std::min(kOfExtent * extent_, std::max(kOfRadius / curvature, kMinOfExtent * extent_));
     double reached = 0;
     double most = 0;
     for (const CurvePoint& sample : samples) {

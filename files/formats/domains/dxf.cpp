@@ -175,8 +175,8 @@ class Reader {
 
   // Not of a drawing of so many arcs that their chords take gigabytes and minutes.
   void warn_of_nested_outlines(Domain& domain) const {
-    constexpr std::size_t kMostArcs = 5000;
-    if (domain.arcs.size() > kMostArcs) return;
+    constexpr std::size_t kMaxArcs = 5000;
+    if (domain.arcs.size() > kMaxArcs) return;
     Domain flat = domain;
     flatten_arcs(flat);
     const std::vector<std::size_t> nested = nested_outlines(flat);

@@ -8,9 +8,9 @@
 namespace weft::files {
 namespace {
 
-constexpr int kMaxDepth = 64;                 // of blocks in blocks
-constexpr std::size_t kMostPlaced = 5000000;  // groups and positions, by blocks
-constexpr std::size_t kGroupsOfInsert = 8;    // as much work as a block that is empty
+constexpr int kMaxDepth = 64;                // of blocks in blocks
+constexpr std::size_t kMaxPlaced = 5000000;  // groups and positions, by blocks
+constexpr std::size_t kGroupsOfInsert = 8;   // as much work as a block that is empty
 
 DxfPlacement shift(Point by) {
   return {.x0 = by.x, .y0 = by.y};
@@ -116,9 +116,9 @@ class Collector {
 
   void count(std::size_t placed, const DxfEntity& entity) {
     placed_ += placed;
-    if (placed_ > kMostPlaced)
+    if (placed_ > kMaxPlaced)
       refuse(entity,
-             "blocks that place at most " + with_separators(kMostPlaced) + " groups and positions");
+             "blocks that place at most " + with_separators(kMaxPlaced) + " groups and positions");
   }
   [[noreturn]] void refuse(const DxfEntity& entity, const std::string& expected) const {
     throw DxfFault{fail(ExitCode::kUnreadableInput,

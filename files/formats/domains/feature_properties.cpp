@@ -41,8 +41,8 @@ std::string name_of(GeometryBuilder& builder, const std::string& path, const std
 Result<std::optional<std::int32_t>> id_of(const GeometryBuilder& builder, const std::string& path,
                                           std::optional<double> value) {
   if (!value) return std::nullopt;
-  constexpr double kMost = std::numeric_limits<std::int32_t>::max();
-  if (!(*value >= -kMost - 1 && *value <= kMost) || *value != std::nearbyint(*value))
+  constexpr double kMax = std::numeric_limits<std::int32_t>::max();
+  if (!(*value >= -kMax - 1 && *value <= kMax) || *value != std::nearbyint(*value))
     return builder.bad(path, "is " + shortest(*value) + ", not an integer of 32 bits");
   return static_cast<std::int32_t>(*value);
 }

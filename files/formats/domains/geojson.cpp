@@ -146,9 +146,9 @@ class Reader {
 
   // For messages.
   static std::string shown(const Json& value) {
-    constexpr std::size_t kMost = 40;
+    constexpr std::size_t kMax = 40;
     std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
-    return text.size() > kMost ? text.substr(0, kMost) + "..." : text;
+    return text.size() > kMax ? text.substr(0, kMax) + "..." : text;
   }
 
   // The member of this name; otherwise the first, in the order of the alphabet, that only capitals

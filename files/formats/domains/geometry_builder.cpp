@@ -13,7 +13,7 @@
 namespace weft::files {
 namespace {
 
-constexpr std::size_t kMostTold = 5;  // of each kind
+constexpr std::size_t kMaxTold = 5;  // of each kind
 
 // The bound on areas that a feature's two properties make together.
 std::optional<double> area_bound(const GeometryProperties& properties) {
@@ -45,10 +45,10 @@ void GeometryBuilder::warn(Warning warning) {
 }
 
 void GeometryBuilder::warn_of_more(WarningKind kind, std::size_t all, const char* what) {
-  if (all > kMostTold)
+  if (all > kMaxTold)
     warn({.kind = kind,
-          .count = all - kMostTold,
-          .text = std::to_string(all - kMostTold) + " more " + what});
+          .count = all - kMaxTold,
+          .text = std::to_string(all - kMaxTold) + " more " + what});
 }
 
 tl::unexpected<Error> GeometryBuilder::bad(const std::string& path, const std::string& what) const {
@@ -71,9 +71,9 @@ std::vector<Point> GeometryBuilder::Chain::corners_after(std::size_t i) const {
 
 std::vector<Point> GeometryBuilder::Chain::chords() const {
   std::vector<Point> all;
-  constexpr std::ptrdiff_t kMostArcs = 10'000;  // more would take gigabytes, for a warning
+  constexpr std::ptrdiff_t kMaxArcs = 10'000;  // more would take gigabytes, for a warning
   const auto arcs = std::ranges::count_if(bulges, [](double bulge) { return bulge != 0; });
-  if (arcs == 0 || arcs > kMostArcs) return all;
+  if (arcs == 0 || arcs > kMaxArcs) return all;
   for (std::size_t i = 0; i < points.size(); ++i) {
     all.push_back(points[i]);
     for (const Point corner : corners_after(i)) all.push_back(corner);
@@ -175,7 +175,7 @@ void GeometryBuilder::check_crossing(const Chain& ring, std::span<const Point> c
   const std::vector<Point> plane = lonlat_ ? unrolled(corners, 0) : std::vector<Point>();
   const auto crossing = find_crossing(lonlat_ ? plane : corners);
   polygon_crosses_ = polygon_crosses_ || crossing;
-  if (!crossing || ++crossings_ > kMostTold) return;
+  if (!crossing || ++crossings_ > kMaxTold) return;
   std::vector<std::size_t> edges;  // whose chord each is
   for (std::size_t i = 0; i < ring.points.size(); ++i)
     edges.insert(edges.end(), 1 + ring.corners_after(i).size(), i);
@@ -212,7 +212,7 @@ Result<void> GeometryBuilder::ring(std::span<const Point> positions, const std::
   // The same meridian may be there by both of its longitudes.
   const bool closes_round = lonlat_ && comes_round(points);
   if (closes_round) points.pop_back();
-  if (!returns && !closes_round && is_closed && ++open_rings_ <= kMostTold)
+  if (!returns && !closes_round && is_closed && ++open_rings_ <= kMaxTold)
     warn({.kind = WarningKind::kOpenRing,
           .place = path,
           .text = path + " is a ring that is not closed: it starts at " +
@@ -241,7 +241,7 @@ void GeometryBuilder::check_overlap() {
     }
   }
   const auto found = find_overlap(rings, ring_roles_);
-  if (!found || ++overlaps_ > kMostTold) return;
+  if (!found || ++overlaps_ > kMaxTold) return;
   const std::string at = coordinates(found->at.x, found->at.y);
   std::string fault = " is a hole that is outside of its polygon or in another hole, at " + at;
   if (found->crossed)
@@ -257,7 +257,7 @@ void GeometryBuilder::check_overlap() {
 }
 
 void GeometryBuilder::leave_out_property(const std::string& path, const std::string& what) {
-  if (++odd_properties_ <= kMostTold)
+  if (++odd_properties_ <= kMaxTold)
     warn({.kind = WarningKind::kProperty,
           .place = path,
           .text = path + " is left out: it is " + what});

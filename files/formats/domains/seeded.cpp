@@ -22,7 +22,7 @@
 namespace weft::files {
 namespace {
 
-constexpr std::size_t kMostContacts = 2'000'000;
+constexpr std::size_t kMaxContacts = 2'000'000;
 
 // The first marker that is not 0 of the segments on an edge; lines come before borders of areas.
 std::int32_t marker_on(const Domain& domain, const check::BentDomain& bent,
@@ -90,7 +90,7 @@ Result<Domain> seeded(Domain domain) {
     return fail(ExitCode::kUnreadableInput, "the domain has numbers that are no coordinates");
   const check::BentDomain bent = check::unbent(given);
   const check::Contacts contacts =
-      check::find_contacts(bent.domain.points, bent.domain.segments, kMostContacts);
+      check::find_contacts(bent.domain.points, bent.domain.segments, kMaxContacts);
   if (!contacts.complete)
     return fail(ExitCode::kUnreadableInput,
                 "the segments meet more than 2,000,000 times, too often to be written with seeds");

@@ -188,12 +188,12 @@ class Reader {
 
 // The system in the .prj file, which is Esri's WKT.
 std::optional<CoordinateSystem> system_beside(const std::filesystem::path& path) {
-  constexpr std::uint64_t kMostBytes = 1 << 16;
+  constexpr std::uint64_t kMaxBytes = 1 << 16;
   std::error_code ignored;
   for (const char* extension : {".prj", ".PRJ"}) {
     const auto name = std::filesystem::path(path).replace_extension(extension);
     if (!std::filesystem::is_regular_file(name, ignored)) continue;
-    const auto contents = read_text_file(name, kMostBytes);
+    const auto contents = read_text_file(name, kMaxBytes);
     if (!contents) continue;
     const std::string text(contents->text());
     const std::size_t from = text.find('"');

@@ -204,8 +204,8 @@ class Writer {
 }  // namespace
 
 void write_exodus(const MeshView& mesh, OutputFile& file) {
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  if (mesh.vertex_count() > kMost || mesh.triangle_count() > kMost)
+  constexpr std::size_t kMax = std::numeric_limits<std::int32_t>::max();
+  if (mesh.vertex_count() > kMax || mesh.triangle_count() > kMax)
     throw std::system_error(EOVERFLOW, std::generic_category());
   Writer(mesh, file).write();
 }

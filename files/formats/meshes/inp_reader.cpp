@@ -29,7 +29,7 @@ namespace weft::files {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t kMostSides = 4;
+constexpr std::size_t kMaxSides = 4;
 
 // Keywords that make nodes and elements, or move them, or have them elsewhere.
 constexpr std::string_view kNotRead[] = {"*include", "*ngen",  "*nfill",  "*ncopy",
@@ -173,7 +173,7 @@ class Reader {
   void element() {
     LineScanner& scanner = lines_.scanner();
     must(element_numbers_.add(scanner, "the element number"));
-    std::array<std::uint32_t, 2 * kMostSides> nodes;
+    std::array<std::uint32_t, 2 * kMaxSides> nodes;
     for (std::size_t k = 0; k < type_.nodes(); ++k) {
       must(scanner.to_field("a node of the element"));
       nodes[k] = must(nodes_.read(scanner, "a node of the element"));
@@ -305,10 +305,10 @@ class Reader {
   // The sides of elements that are on surfaces become edges.
   void add_sides(const std::vector<std::int32_t>& of_marker) {
     if (surfaces_.empty()) return;
-    std::vector<std::uint32_t> label(kMostSides * elements_.size(), kNone);
+    std::vector<std::uint32_t> label(kMaxSides * elements_.size(), kNone);
     for (const SurfaceLine& line : surfaces_) {
       const auto mark = [&](std::uint32_t i) {
-        std::uint32_t& at = label[kMostSides * i + line.side];
+        std::uint32_t& at = label[kMaxSides * i + line.side];
         if (at == kNone && elements_[i].is_shell == line.of_shell) at = line.marker;
       };
       if (line.set)
@@ -323,7 +323,7 @@ class Reader {
           count == 3 ? std::span<const std::uint32_t>(mesh_.triangles).subspan(3 * place, 3)
                      : mesh_.faces.of(place);
       for (std::size_t side = 0; side < count; ++side) {
-        const std::uint32_t marker = label[kMostSides * i + side];
+        const std::uint32_t marker = label[kMaxSides * i + side];
         if (marker == kNone) continue;
         mesh_.edges.insert(mesh_.edges.end(), {corners[side], corners[(side + 1) % count]});
         mesh_.edge_markers.push_back(of_marker[marker]);

@@ -16,7 +16,7 @@ namespace weft::files {
 namespace {
 
 constexpr std::ptrdiff_t kLongestNumber = 20;  // characters
-constexpr std::size_t kMostInLine = 16;
+constexpr std::size_t kMaxInLine = 16;
 
 void put_real(OutputFile& file, double value) {
   std::array<char, 32> text;
@@ -31,7 +31,7 @@ class NumberLine {
  public:
   explicit NumberLine(OutputFile& file) : file_(file) {}
   void put(std::size_t number) {
-    if (in_line_ == kMostInLine) end();
+    if (in_line_ == kMaxInLine) end();
     if (in_line_++ > 0) file_.put(", ");
     file_.number(static_cast<std::int64_t>(number) + 1);
   }

@@ -188,8 +188,8 @@ Array parse_npy(const std::string& name, std::string_view bytes) {
   std::uint64_t item = 0;  // in bytes, or in letters
   const char* const type_end = array.type.data() + array.type.size();
   const auto [item_end, item_problem] = std::from_chars(array.type.data() + 2, type_end, item);
-  constexpr std::uint64_t kMostLetters = 1 << 20;
-  if (item_problem != std::errc() || item_end != type_end || item == 0 || item > kMostLetters)
+  constexpr std::uint64_t kMaxLetters = 1 << 20;
+  if (item_problem != std::errc() || item_end != type_end || item == 0 || item > kMaxLetters)
     throw unknown();
   const bool is_integer = array.kind == 'i' || array.kind == 'u';
   const bool is_number = (is_integer && (item == 1 || item == 2 || item == 4 || item == 8)) ||

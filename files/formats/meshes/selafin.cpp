@@ -15,7 +15,7 @@
 namespace weft::files {
 namespace {
 
-constexpr std::size_t kMostBytes = std::numeric_limits<std::int32_t>::max();  // of a record
+constexpr std::size_t kMaxBytes = std::numeric_limits<std::int32_t>::max();  // of a record
 
 // Texts of a record are padded with blanks.
 std::string filled(std::string text, std::size_t size) {
@@ -71,7 +71,7 @@ ScratchArray<std::int32_t> boundary_numbers(const MeshView& mesh) {
 }  // namespace
 
 void write_selafin(const MeshView& mesh, OutputFile& file) {
-  if (mesh.triangles.size_bytes() > kMostBytes || mesh.coordinates.size_bytes() / 2 > kMostBytes)
+  if (mesh.triangles.size_bytes() > kMaxBytes || mesh.coordinates.size_bytes() / 2 > kMaxBytes)
     return file.fail(EFBIG);
   const Bed bed(mesh);
   std::vector<const VertexValues*> others;

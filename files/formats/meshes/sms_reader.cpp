@@ -19,7 +19,7 @@
 namespace weft::files {
 namespace {
 
-constexpr std::int64_t kMostNodes = std::numeric_limits<std::uint32_t>::max();
+constexpr std::int64_t kMaxNodes = std::numeric_limits<std::uint32_t>::max();
 
 class Reader {
  public:
@@ -75,7 +75,7 @@ class Reader {
   Result<std::uint32_t> node_number() {
     const auto number = scanner_.integer("a node");
     if (!number) return tl::unexpected(number.error());
-    if (*number < 1 || *number > kMostNodes)
+    if (*number < 1 || *number > kMaxNodes)
       return scanner_.error("the node is " + std::to_string(*number) + ", numbers begin at 1");
     return static_cast<std::uint32_t>(*number);
   }
@@ -125,8 +125,8 @@ class Reader {
     while (!scanner_.at_line_end()) {
       const auto value = scanner_.integer("a node");
       if (!value) return tl::unexpected(value.error());
-      const std::int64_t node = *value < 0 ? -std::max(*value, -kMostNodes - 1) : *value;
-      if (node < 1 || node > kMostNodes)
+      const std::int64_t node = *value < 0 ? -std::max(*value, -kMaxNodes - 1) : *value;
+      if (node < 1 || node > kMaxNodes)
         return scanner_.error("the node is " + std::to_string(*value) + ", numbers begin at 1");
       string_.push_back(static_cast<std::uint32_t>(node));
       if (*value < 0) return end_node_string();

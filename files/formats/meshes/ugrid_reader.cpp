@@ -222,8 +222,8 @@ class Reader {
     for (const double value : values->second.numbers) {
       const std::string_view name = next_word(meanings);
       if (name.empty()) return;
-      constexpr double kMost = std::numeric_limits<std::int32_t>::max();
-      if (value >= -kMost - 1 && value <= kMost)
+      constexpr double kMax = std::numeric_limits<std::int32_t>::max();
+      if (value >= -kMax - 1 && value <= kMax)
         names.add(kind, static_cast<std::int32_t>(value), name);
     }
   }

@@ -140,13 +140,13 @@ class BandChoice {
   }
 
   static std::string list(const std::vector<std::string>& names) {
-    constexpr std::size_t kMost = 24;
+    constexpr std::size_t kMax = 24;
     std::string text;
-    for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
+    for (std::size_t i = 0; i < std::min(names.size(), kMax); ++i) {
       if (i > 0) text += ", ";
       text += label(names, i);
     }
-    return names.size() > kMost ? text + ", ..." : text;
+    return names.size() > kMax ? text + ", ..." : text;
   }
 
   // "there are 1 'depth', 2 'speed'"

@@ -16,7 +16,7 @@ namespace {
 constexpr float kNoData = std::numeric_limits<float>::quiet_NaN();
 constexpr std::int64_t kMargin = 2;  // nodes on each side of the box
 // The most values to average: more would take minutes.
-constexpr double kMostRead = 1e11;
+constexpr double kMaxRead = 1e11;
 // Values that are held in memory while they are averaged.
 constexpr std::int64_t kTileValues = std::int64_t{1} << 22;
 
@@ -89,7 +89,7 @@ class Window {
     const Plan plan = best_plan();
     if (const double nodes =
             static_cast<double>(plan.columns.count) * static_cast<double>(plan.rows.count);
-        nodes > kMostRead)
+        nodes > kMaxRead)
       return fail(ExitCode::kUnreadableInput,
                   shape_.name + ": " + shortest(nodes) +
                       " values in the domain's box; make overviews of the raster (gdaladdo)");

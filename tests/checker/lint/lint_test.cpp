@@ -33,7 +33,7 @@ TEST(Lint, CountsWhatItDoesNotKeep) {
   for (int i = 0; i < 600; ++i) drawn.line({{0, double(i)}, {1, double(i)}});
   const Faults faults = drawn.faults();
   EXPECT_EQ(faults.total(FaultKind::kOpenEnd), 1200U);
-  EXPECT_EQ(faults.kept().size(), Faults::kMostKept);
+  EXPECT_EQ(faults.kept().size(), Faults::kMaxKept);
 }
 
 // Half a million crossings: the rest of the rules would take long.

@@ -237,7 +237,7 @@ TEST_F(DrawingTest, OfMoreTrianglesThanAreKeptLooksLikeOneOfFewer) {
     return Image(draw_to("m.png", square_mesh(n), {.color = DrawColor::kRegion, .long_side = 600}))
         .mean_brightness(100, 100, 500, 500);
   };
-  static_assert(2 * 350 * 350 < Drawing::kMostVectors && Drawing::kMostVectors < 2 * 370 * 370);
+  static_assert(2 * 350 * 350 < Drawing::kMaxVectors && Drawing::kMaxVectors < 2 * 370 * 370);
   EXPECT_NEAR(drawn(370), drawn(350), 2);
 }
 

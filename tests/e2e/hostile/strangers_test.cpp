@@ -30,10 +30,10 @@ using std::chrono::steady_clock;
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 // By how much a stranger may raise the server's memory.
-constexpr std::uint64_t kMostMemory = 64 * kMiB;
+constexpr std::uint64_t kMaxMemory = 64 * kMiB;
 // How much a stranger may make it log: at once, and in each second that a test takes.
-constexpr double kMostLog = 50'000;
-constexpr double kMostLogPerSecond = 1'000'000 / 60.0;
+constexpr double kMaxLog = 50'000;
+constexpr double kMaxLogPerSecond = 1'000'000 / 60.0;
 constexpr const char* kToken = "an-honest-clients-token";
 
 constexpr const char* kMethods[] = {
@@ -64,7 +64,7 @@ class Strangers : public ::testing::Test {
   // TCP, so that peers can be told apart.
   std::string tcp() const { return server_.addresses().at(1); }
 
-  void expect_no_harm(std::uint64_t most_memory = kMostMemory) {
+  void expect_no_harm(std::uint64_t most_memory = kMaxMemory) {
     bystander_->stop();
     EXPECT_EQ(bystander_->failures(), 0u);
     EXPECT_GT(bystander_->answers(), 0u);
@@ -74,7 +74,7 @@ class Strangers : public ::testing::Test {
     }
     const std::chrono::duration<double> passed = steady_clock::now() - start_;
     EXPECT_LT(static_cast<double>(server_.logged_bytes()),
-              kMostLog + kMostLogPerSecond * passed.count());
+              kMaxLog + kMaxLogPerSecond * passed.count());
   }
 
   const steady_clock::time_point start_ = steady_clock::now();

@@ -61,15 +61,15 @@ std::string in_range(std::string_view text, std::int64_t first, std::int64_t las
 }
 
 TEST(NodeNumbers, AreFoundInRangesHoweverWide) {
-  constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
-  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  constexpr std::int64_t kMin = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
   EXPECT_EQ(in_range("5 6 7 8", 5, 8, 1), "0123");
   EXPECT_EQ(in_range("5 6 7 8", 6, 9, 2), "13");
   EXPECT_EQ(in_range("5 6 7 8", 8, 5, 1), "");
-  EXPECT_EQ(in_range("5 6 7 8", kLeast, kMost, 2), "13");
-  EXPECT_EQ(in_range("5 6 7 8", kLeast, kMost, kMost), "");
-  EXPECT_EQ(in_range("5 6 7 8", 6, kMost, kMost - 7), "1");
-  EXPECT_EQ(in_range("9 -3 9223372036854775807", kLeast, kMost, 1), "012");
+  EXPECT_EQ(in_range("5 6 7 8", kMin, kMax, 2), "13");
+  EXPECT_EQ(in_range("5 6 7 8", kMin, kMax, kMax), "");
+  EXPECT_EQ(in_range("5 6 7 8", 6, kMax, kMax - 7), "1");
+  EXPECT_EQ(in_range("9 -3 9223372036854775807", kMin, kMax, 1), "012");
   EXPECT_EQ(in_range("9 -3 9223372036854775807", -3, 21, 12), "01");
 }
 

@@ -289,7 +289,7 @@ TEST(Bridge, CancelsTheCallOfABrowserThatGoesAway) {
 // What lies between the engine and the browser: two messages in the console, the server's own
 // buffer, and what the kernel takes.
 TEST(Bridge, ABrowserThatStopsReadingStopsTheEngine) {
-  constexpr std::uint32_t kMost = 40;
+  constexpr std::uint32_t kMax = 40;
   std::atomic<std::uint32_t> sent{0};
   Event begun;  // the engine is at work for the slow one
   Event refused;
@@ -315,7 +315,7 @@ TEST(Bridge, ABrowserThatStopsReadingStopsTheEngine) {
       EXPECT_TRUE(other.status().ok()) << other.status().error_message();
       EXPECT_EQ(chunk_indices(other).size(), 50u);
     }
-    EXPECT_LT(sent, kMost) << "150 MiB went to the others meanwhile";
+    EXPECT_LT(sent, kMax) << "150 MiB went to the others meanwhile";
   }
   EXPECT_TRUE(refused.wait());
 }

@@ -13,7 +13,7 @@
 namespace weft::server::testing {
 namespace {
 
-constexpr std::uint64_t kMost = 1000;
+constexpr std::uint64_t kMax = 1000;
 
 // All messages of a body that comes in pieces; each is passed on before the next.
 std::vector<std::string> messages_of(CallBody& body, const std::string& bytes, std::size_t piece) {
@@ -35,11 +35,11 @@ TEST(CallBody, IsTheSameInAnyPiecesAndInBase64) {
   in_base64.append((4 - in_base64.size() % 4) % 4, '=');
   const std::vector<std::string> wanted{"one", "", "three"};
   for (std::size_t piece = 1; piece <= bytes.size(); ++piece) {
-    ByteBudget budget(kMost);
-    CallBody body(false, kMost, budget);
+    ByteBudget budget(kMax);
+    CallBody body(false, kMax, budget);
     EXPECT_EQ(messages_of(body, bytes, piece), wanted) << piece;
     EXPECT_FALSE(body.end());
-    CallBody text(true, kMost, budget);
+    CallBody text(true, kMax, budget);
     EXPECT_EQ(messages_of(text, in_base64, piece), wanted) << piece;
     EXPECT_FALSE(text.end());
   }
@@ -47,30 +47,30 @@ TEST(CallBody, IsTheSameInAnyPiecesAndInBase64) {
 
 TEST(CallBody, GivesBackWhatWasPassedOn) {
   ByteBudget budget(8);
-  CallBody body(false, kMost, budget);
+  CallBody body(false, kMax, budget);
   EXPECT_EQ(messages_of(body, framed("12345678") + framed("12345678"), 100).size(), 2u);
 }
 
 TEST(CallBody, ThatEndsWithinAMessageIsMalformed) {
-  ByteBudget budget(kMost);
-  CallBody body(false, kMost, budget);
+  ByteBudget budget(kMax);
+  CallBody body(false, kMax, budget);
   EXPECT_TRUE(messages_of(body, framed("one").substr(0, 6), 100).empty());
   ASSERT_TRUE(body.end());
   EXPECT_EQ(body.end()->reason, Reason::kMalformedRequest);
 }
 
 TEST(CallBody, ThatIsNoBase64IsMalformed) {
-  ByteBudget budget(kMost);
-  CallBody body(true, kMost, budget);
+  ByteBudget budget(kMax);
+  CallBody body(true, kMax, budget);
   const auto failure = body.add("****");
   ASSERT_TRUE(failure);
   EXPECT_EQ(failure->reason, Reason::kMalformedRequest);
 }
 
 TEST(CallBody, LargerThanTheLargestMessageIsRefused) {
-  ByteBudget budget(kMost);
-  CallBody body(false, kMost, budget);
-  const std::string empty_frames((kMost + 4096) / 5 * 5 + 5, '\0');
+  ByteBudget budget(kMax);
+  CallBody body(false, kMax, budget);
+  const std::string empty_frames((kMax + 4096) / 5 * 5 + 5, '\0');
   const auto failure = body.add(empty_frames);
   ASSERT_TRUE(failure);
   EXPECT_EQ(failure->reason, Reason::kLimitExceeded);

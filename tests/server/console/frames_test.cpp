@@ -10,7 +10,7 @@
 namespace weft::server::testing {
 namespace {
 
-constexpr std::uint64_t kMostBytes = 1000;
+constexpr std::uint64_t kMaxBytes = 1000;
 
 // All messages of some bytes that come in pieces of `piece`.
 tl::expected<std::vector<std::string>, Failure> read_all(FrameReader& reader,
@@ -34,21 +34,21 @@ tl::expected<std::vector<std::string>, Failure> read_all(FrameReader& reader,
 }
 
 Reason failure_of(const std::string& bytes) {
-  ByteBudget budget(kMostBytes);
-  FrameReader reader(kMostBytes, budget);
+  ByteBudget budget(kMaxBytes);
+  FrameReader reader(kMaxBytes, budget);
   const auto messages = read_all(reader, bytes, bytes.size());
   EXPECT_FALSE(messages);
   return messages ? Reason::kInternal : messages.error().reason;
 }
 
 TEST(Frames, AreReadWhereverTheyAreSplit) {
-  const std::vector<std::string> messages = {"one", "", std::string(kMostBytes, 'x'),
+  const std::vector<std::string> messages = {"one", "", std::string(kMaxBytes, 'x'),
                                              std::string("\0\x80", 2)};
   std::string bytes;
   for (const std::string& message : messages) bytes += framed(message);
   for (std::size_t piece = 1; piece <= bytes.size(); ++piece) {
-    ByteBudget budget(kMostBytes);
-    FrameReader reader(kMostBytes, budget);
+    ByteBudget budget(kMaxBytes);
+    FrameReader reader(kMaxBytes, budget);
     EXPECT_EQ(read_all(reader, bytes, piece).value(), messages) << piece;
     EXPECT_TRUE(reader.at_border());
   }
@@ -57,8 +57,8 @@ TEST(Frames, AreReadWhereverTheyAreSplit) {
 TEST(Frames, MayEndBetweenMessagesOnly) {
   const std::string bytes = framed("message");
   for (std::size_t size = 0; size <= bytes.size(); ++size) {
-    ByteBudget budget(kMostBytes);
-    FrameReader reader(kMostBytes, budget);
+    ByteBudget budget(kMaxBytes);
+    FrameReader reader(kMaxBytes, budget);
     ASSERT_TRUE(read_all(reader, bytes.substr(0, size), 1));
     EXPECT_EQ(reader.at_border(), size == 0 || size == bytes.size()) << size;
   }
@@ -72,7 +72,7 @@ TEST(Frames, OfARequestHaveNoFlags) {
 }
 
 TEST(Frames, ThatAreTooLargeAreRefusedByTheirHeader) {
-  EXPECT_EQ(failure_of(framed(std::string(kMostBytes + 1, 'x')).substr(0, kFrameHeader)),
+  EXPECT_EQ(failure_of(framed(std::string(kMaxBytes + 1, 'x')).substr(0, kFrameHeader)),
             Reason::kLimitExceeded);
   EXPECT_EQ(failure_of(std::string("\0\xff\xff\xff\xff", kFrameHeader)), Reason::kLimitExceeded);
 }
@@ -80,9 +80,9 @@ TEST(Frames, ThatAreTooLargeAreRefusedByTheirHeader) {
 TEST(Frames, TakeFromTheBudgetWhatHasComeAndGiveItBack) {
   ByteBudget budget(15);
   {
-    FrameReader first(kMostBytes, budget);
+    FrameReader first(kMaxBytes, budget);
     ASSERT_TRUE(read_all(first, framed("0123456789").substr(0, kFrameHeader + 9), 1));
-    FrameReader second(kMostBytes, budget);
+    FrameReader second(kMaxBytes, budget);
     const auto refused = read_all(second, framed("0123456"), 1);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().reason, Reason::kOutOfMemory);

@@ -50,9 +50,9 @@ TEST(JobWire, RefusesASummaryThatDoesNotParse) {
 
 TEST(SqlValues, HoldAnyTime) {
   EXPECT_EQ(to_micros(from_micros(1'700'000'000'000'001)), 1'700'000'000'000'001);
-  constexpr auto kMost = std::numeric_limits<std::int64_t>::max();
-  EXPECT_GT(from_micros(kMost), from_micros(kMost / 2000));
-  EXPECT_LT(from_micros(-kMost), from_micros(-kMost / 2000));
+  constexpr auto kMax = std::numeric_limits<std::int64_t>::max();
+  EXPECT_GT(from_micros(kMax), from_micros(kMax / 2000));
+  EXPECT_LT(from_micros(-kMax), from_micros(-kMax / 2000));
 }
 
 }  // namespace

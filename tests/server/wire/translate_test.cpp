@@ -200,13 +200,13 @@ TEST(SummaryToWire, CarriesTheBoxesOfTheQuadtreeInOrder) {
 }
 
 TEST(SummaryToWire, LeavesBoxesOutWhereAClientMightNotTakeThem) {
-  constexpr std::size_t kMostOfAClient = std::size_t{4} << 20;
+  constexpr std::size_t kMaxOfAClient = std::size_t{4} << 20;
   Summary summary;
   summary.leaves.resize(wire::kMaxLeafBoxes);
   v1::Summary message = to_wire(summary, 1);
   add_quadtree(summary, message);
   EXPECT_EQ(static_cast<std::size_t>(message.leaf_boxes_size()), 4 * wire::kMaxLeafBoxes);
-  EXPECT_LT(message.ByteSizeLong(), kMostOfAClient);
+  EXPECT_LT(message.ByteSizeLong(), kMaxOfAClient);
   summary.leaves.resize(wire::kMaxLeafBoxes + 1);
   message = to_wire(summary, 1);
   add_quadtree(summary, message);

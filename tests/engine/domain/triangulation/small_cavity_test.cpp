@@ -52,7 +52,7 @@ bool expect_cavity(const Built& built, Point p) {
   const std::set<std::uint32_t> expected = built.in_conflict(p);
   const bool is_at_hull = std::any_of(expected.begin(), expected.end(),
                                       [&](std::uint32_t f) { return built.is_infinite(f); });
-  const bool is_small = expected.size() <= SmallCavity::kMostFaces && !is_at_hull;
+  const bool is_small = expected.size() <= SmallCavity::kMaxFaces && !is_at_hull;
   for (const std::uint32_t first : expected) {
     SmallCavity cavity;
     EXPECT_EQ(cavity.find(built.faces.data(), built.points.data(), p, first), is_small);
@@ -119,13 +119,13 @@ TEST(SmallCavity, DecidesWhatUnderflows) {
 
 TEST(SmallCavity, LeavesLargeOnesToTheGeneralWay) {
   std::vector<Point> points{{-2, -2}, {2, -2}, {2, 2}, {-2, 2}};
-  constexpr int kAround = SmallCavity::kMostFaces + 20;
+  constexpr int kAround = SmallCavity::kMaxFaces + 20;
   for (int i = 0; i < kAround; ++i) {
     const double angle = 6.283185307179586 * i / kAround;
     points.push_back({std::cos(angle), std::sin(angle)});
   }
   const Built built(points);
-  EXPECT_GT(built.in_conflict({0.001, 0.0005}).size(), SmallCavity::kMostFaces);
+  EXPECT_GT(built.in_conflict({0.001, 0.0005}).size(), SmallCavity::kMaxFaces);
   EXPECT_FALSE(expect_cavity(built, {0.001, 0.0005}));
 }
 

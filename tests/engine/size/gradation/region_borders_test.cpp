@@ -60,8 +60,8 @@ TEST(RegionBorders, AreFew) {
   std::vector<double> bounds{0};
   for (int i = -300; i <= 300; i += 2) bounds.push_back(std::pow(10.0, i));
   const auto borders = region_borders(row(bounds));
-  EXPECT_LE(borders.size(), kMostRegionBorders + 1);
-  EXPECT_GE(borders.size(), kMostRegionBorders / 2);
+  EXPECT_LE(borders.size(), kMaxRegionBorders + 1);
+  EXPECT_GE(borders.size(), kMaxRegionBorders / 2);
   EXPECT_EQ(borders[0].max_area, 1e-300);
 }
 
