@@ -54,6 +54,10 @@ constexpr double kMinLeaves = 128;
 // are done in the order of the shortest chains (parallel/leaf_order.h), not along the sweep.
 constexpr double kFewLeaves = 256;
 constexpr double kMoreOfFewLeaves = 1.4;
+// Of layers (layers/layer_filler.h): edges on walls over those that the size asks for, and what is
+// kept of the rest of the mesh, per triangle of it.
+constexpr double kEdgesOnWall = 1.6;
+constexpr double kBytesBesideLayers = 16;
 // Of fragments that are built and wait for their reader, per triangle. If the reader stalls, so
 // many full leaves wait: fragments_ahead, each of which is about .6 of the largest.
 constexpr double kBytesOfWaiting = 22;
@@ -144,13 +148,17 @@ BySize by_size_of(const MeshRequest& request) {
           is_raster || !(over_bound.is_even || size.function().constant())};
 }
 
+EdgeLimits limits_of(const SizeSpec& size) {
+  std::vector<SizeAt> at;
+  for (const SizeAt& length : size.at)
+    if (length.max_edge > 0) at.push_back(length);
+  return EdgeLimits(std::move(at));
+}
+
 // What the lengths at markers ask for.
 double triangles_by_pieces(const MeshRequest& request) {
-  std::vector<SizeAt> at;
-  for (const SizeAt& length : request.size.at)
-    if (length.max_edge > 0) at.push_back(length);
-  if (at.empty()) return 0;
-  const EdgeLimits limits(std::move(at));
+  const EdgeLimits limits = limits_of(request.size);
+  if (limits.empty()) return 0;
   const auto& points = request.pslg.points;
   double pieces = 0;
   for (const Segment& s : request.pslg.segments) {
@@ -160,6 +168,36 @@ double triangles_by_pieces(const MeshRequest& request) {
   }
   const double gradation = request.size.gradation;
   return EdgeLimits::kTrianglesPerPiece * pieces / (gradation > 0 ? std::min(gradation, 1.0) : 1.0);
+}
+
+// The edges that the size makes of a segment, as at kSamples places of it.
+double edges_by_size(Point a, Point b, const SizeFunction& size) {
+  constexpr int kSamples = 4;
+  double sum = 0;
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = (i + 0.5) / kSamples;
+    const double area = size({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)});
+    if (area > 0) sum += 1 / SizeFunction::edge_of_area(area);
+  }
+  return std::hypot(b.x - a.x, b.y - a.y) * sum / kSamples;
+}
+
+// Those of layers along walls: a column at each edge of the mesh there.
+double triangles_of_layers(const MeshRequest& request) {
+  if (request.layers.empty()) return 0;
+  const Size size = size_to_estimate_by(request.size);
+  const EdgeLimits limits = limits_of(request.size);
+  const auto& points = request.pslg.points;
+  double triangles = 0;
+  for (const Layers& layers : request.layers)
+    for (const Segment& s : request.pslg.segments) {
+      if (s.marker != layers.marker || s.a >= points.size() || s.b >= points.size()) continue;
+      const Point a = points[s.a], b = points[s.b];
+      const double edges = std::max(limits.pieces(s.marker, a, b),
+                                    1 + kEdgesOnWall * edges_by_size(a, b, size.function()));
+      triangles += 2.0 * layers.rows * edges;
+    }
+  return triangles;
 }
 
 // Bytes of a mesh that is held as a whole, or, if it may stream, of the strip that is held; and of
@@ -190,6 +228,7 @@ Estimate estimate(const MeshRequest& request, const Budget& budget) {
   const auto points = static_cast<double>(request.pslg.points.size());
   const std::uint64_t most = std::min(budget.max_triangles, budget.triangle_limit);
   const BySize by_size = by_size_of(request);
+  const double of_layers = triangles_of_layers(request);
   const double triangles =
       std::min(by_size.triangles + triangles_by_pieces(request) + kTrianglesPerPoint * points,
                static_cast<double>(most));
@@ -199,9 +238,10 @@ Estimate estimate(const MeshRequest& request, const Budget& budget) {
   const double bytes =
       kBytesPerRun + kBytesPerPoint * points + static_cast<double>(least) +
       bytes_of_lattices(by_size) +
+      (request.layers.empty() ? 0 : kBytesBesideLayers * triangles + kBytesPerPoint * points) +
       bytes_of_mesh(triangles, request.leaf_triangles.value_or(leaf_triangles_for(triangles)),
                     may_stream, by_size.varies);
-  return {at_most(most, triangles), at_most(budget.max_bytes, bytes), least};
+  return {at_most(most, triangles + of_layers), at_most(budget.max_bytes, bytes), least};
 }
 
 }  // namespace weft

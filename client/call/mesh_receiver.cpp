@@ -6,8 +6,12 @@
 #include <cmath>
 #include <span>
 
+#include "wire/chunk_view.h"
+
 namespace weft::client {
 namespace {
+
+using wire::span_of;
 
 static_assert(std::endian::native == std::endian::little,
               "arrays are hashed as they lie in memory");
@@ -18,11 +22,6 @@ tl::unexpected<Error> damaged(const std::string& what) {
 
 tl::unexpected<Error> damaged(const v1::Chunk& chunk, const std::string& what) {
   return damaged("chunk " + std::to_string(chunk.index()) + " " + what);
-}
-
-template <class T>
-std::span<const T> span_of(const google::protobuf::RepeatedField<T>& field) {
-  return {field.data(), static_cast<std::size_t>(field.size())};
 }
 
 // The first index that is not below the limit, if there is one. The common case reads each once and
@@ -157,14 +156,7 @@ Result<void> MeshReceiver::receive(const v1::Chunk& chunk) {
   mesh_hash_.add(digest.data(), digest.size());
   ++chunks_;
 
-  return spool_.append({.coordinates = span_of(chunk.coordinates()),
-                        .triangles = span_of(chunk.triangles()),
-                        .regions = span_of(chunk.regions()),
-                        .edges = span_of(chunk.edges()),
-                        .edge_markers = span_of(chunk.edge_markers()),
-                        .input_points = span_of(chunk.input_points()),
-                        .input_point_markers = {},
-                        .edge_bulges = span_of(chunk.edge_bulges())});
+  return spool_.append(wire::view_of(chunk));
 }
 
 Result<void> MeshReceiver::receive(const v1::Summary& summary) {

@@ -75,40 +75,6 @@ Result<bool> fill_fields(const Domain& domain, const DomainProjection* projectio
   return true;
 }
 
-void fill(std::int32_t marker, const WallLayers& layers, v1::Layers& message) {
-  message.set_marker(marker);
-  message.set_first(layers.first);
-  message.set_ratio(layers.ratio);
-  message.set_rows(layers.rows);
-  if (layers.region) message.set_region(*layers.region);
-}
-
-// What is asked of segments by their markers.
-Result<void> fill_sides(const Domain& domain, RequestOptions& options) {
-  if (options.keep) {
-    const auto kept = options.keep->numbers(domain.names.markers);
-    if (!kept) return fault_at("quality.keep", options, kept.error());
-    options.asked.mutable_quality()->mutable_keep()->mutable_markers()->Assign(kept->begin(),
-                                                                               kept->end());
-  }
-  for (std::size_t i = 0; i < options.periodic.size(); ++i) {
-    const auto sides = options.periodic[i].numbers(domain.names.markers);
-    if (!sides)
-      return fault_at("quality.periodic[" + std::to_string(i) + "]", options, sides.error());
-    v1::PeriodicSides& pair = *options.asked.mutable_quality()->add_periodic();
-    pair.set_from(sides->front());
-    pair.set_to(sides->back());
-  }
-  for (std::size_t i = 0; i < options.layers.size(); ++i) {
-    const WallLayers& layers = options.layers[i];
-    const auto marker = layers.number(domain.names.markers);
-    if (!marker)
-      return fault_at("quality.layers[" + std::to_string(i) + "]", options, marker.error());
-    fill(*marker, layers, *options.asked.mutable_quality()->add_layers());
-  }
-  return {};
-}
-
 }  // namespace
 
 Result<RequestOptions> with_size(const RequestOptions& given, const Domain& domain,
@@ -123,16 +89,6 @@ Result<RequestOptions> with_size(const RequestOptions& given, const Domain& doma
   if (!size) return fault_at("size", options, size.error());
   if (by_edge) size->set_measure(v1::MEASURE_EDGE);
   size->MergeFrom(given.asked.size());
-  for (const EdgeAt& edge_at : options.edge_at) {
-    const auto marker = edge_at.name.empty() ? Result<std::int32_t>(edge_at.marker)
-                                             : find_marker(edge_at.name, domain.names.markers);
-    if (!marker)
-      return fault_at("size.at[" + std::to_string(size->at_size()) + "]", options, marker.error());
-    v1::SizeAt& at = *size->add_at();
-    at.set_marker(*marker);
-    at.set_max_edge(edge_at.max_edge);
-  }
-  if (auto filled = fill_sides(domain, options); !filled) return tl::unexpected(filled.error());
   const auto rasters = std::count_if(
       options.fields.begin(), options.fields.end(),
       [](const auto& field) { return std::holds_alternative<FieldOption::Raster>(field.kind); });
@@ -145,6 +101,8 @@ Result<RequestOptions> with_size(const RequestOptions& given, const Domain& doma
     if (*fits) break;
   }
   if (size->ByteSizeLong() != 0) *options.asked.mutable_size() = std::move(*size);
+  if (const auto fault = fill(options.markers, domain.names.markers, options.asked))
+    return fault_at(fault->field, options, fault->error);
   return options;
 }
 

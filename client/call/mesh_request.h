@@ -5,7 +5,6 @@
 //   const auto request = make_request(domain, {.size = "0.01", .min_angle_deg = 30});
 #pragma once
 
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -14,13 +13,10 @@
 #include "client/call/field_option.h"
 #include "files/base/error.h"
 #include "files/formats/domain.h"
-#include "files/formats/edge_at.h"
-#include "files/formats/marker_list.h"
-#include "files/formats/marker_pairs.h"
 #include "files/formats/name_option.h"
-#include "files/formats/wall_layers.h"
 #include "files/geo/domain_projection.h"
 #include "weft/v1/mesh_service.pb.h"
+#include "wire/marker_options.h"
 
 namespace weft::client {
 
@@ -31,12 +27,8 @@ struct RequestOptions {
   std::string size{};
   std::string edge{};
   std::vector<FieldOption> fields{};
-  std::vector<EdgeAt> edge_at{};    // lengths of edges on segments, by marker
+  wire::MarkerOptions markers{};    // of segments
   std::vector<NameOption> names{};  // of markers and regions, besides those of the domain's file
-  // Segments that stay as they are, by marker; none in the list: all segments.
-  std::optional<MarkerList> keep{};
-  std::vector<MarkerPair> periodic{};  // sides that repeat each other
-  std::vector<WallLayers> layers{};    // along walls
   PolygonFill fill = PolygonFill::kUnion;
   // All other options (wire/named_options.h); of the above what with_size has read.
   v1::GenerateMeshRequest asked{};

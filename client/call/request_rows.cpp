@@ -14,6 +14,7 @@
 #include "files/formats/mesh_formats.h"
 #include "files/formats/raster.h"
 #include "files/message/field_path.h"
+#include "wire/marker_options.h"
 #include "wire/named_options.h"
 
 namespace weft::client {
@@ -93,13 +94,6 @@ OptionValue<Request> list(std::string unit, std::vector<Item> Request::*field, P
           }};
 }
 
-// The same for texts that name no files.
-template <class Item>
-OptionValue<Request> list(std::string unit, std::vector<Item> Request::*field) {
-  return list(std::move(unit), field,
-              [](const std::string& text, const auto&) { return Item::parse(text); });
-}
-
 // One that weft.v1 names, with a value that it has for a text.
 OptionRow<Request> named(const wire::NamedOption& option) {
   const v1::Option& text = option.annotation;
@@ -115,6 +109,18 @@ OptionRow<Request> named(const wire::NamedOption& option) {
           option.path};
 }
 
+const wire::MarkerOption& marker_option(std::string_view name) {
+  return *std::ranges::find(wire::marker_options(), name, &wire::MarkerOption::name);
+}
+
+// One that names markers.
+OptionRow<Request> of_markers(std::string_view name) {
+  const wire::MarkerOption& option = marker_option(name);
+  return {
+      option.name, option.variable,    option.about + (option.repeats ? ". May be repeated" : ""),
+      "",          marker_value(name), option.path};
+}
+
 // Those whose fields begin so. The quadtree is asked for by what draws it.
 void add_named(std::string_view part, OptionRows<Request>& rows) {
   for (const wire::NamedOption& option : wire::named_options())
@@ -126,26 +132,12 @@ const OptionRows<Request>& other_rows() {
   static const OptionRows<Request> rows = [] {
     OptionRows<Request> all;
     add_named("quality.", all);
-    const OptionRows<Request> special = {
-        {"keep", "WEFT_KEEP_SEGMENTS",
-         "Segments that stay as they are, by their markers, numbers or names, or all: no new point "
-         "lies on them, and triangles there may miss their bounds",
-         "", markers_to_keep(), "quality.keep"},
-        {"periodic", "WEFT_PERIODIC",
-         "Sides that repeat each other, pairs of their markers, numbers or names: they get the "
-         "same vertices, moved or turned from the first to the second",
-         "", periodic_sides(), "quality.periodic"},
-        {"layers", "",
-         "Rows of thin triangles along the segments with the marker M, a number or a name: the row "
-         "at the wall is H high, each other Q times as high as the one before (Q is 1 if it is "
-         "left "
-         "out). They are the region ID, or one of their own. May be repeated",
-         "", wall_layers(), "quality.layers"},
+    for (const char* name : {"keep", "periodic", "layers"}) all.push_back(of_markers(name));
+    all.push_back(
         {"fill", "WEFT_FILL",
          "What is meshed where polygons overlap: union all that any of them covers, even-odd what "
          "an odd number of them covers, difference the first less the others",
-         "union", fill_value(&Request::fill), "domain.fill"}};
-    all.insert(all.end(), special.begin(), special.end());
+         "union", fill_value(&Request::fill), "domain.fill"});
     add_named("domain.", all);
     for (const wire::NamedOption& option : wire::named_options())
       if (option.part == nullptr && option.path != "want_quadtree") all.push_back(named(option));
@@ -157,31 +149,16 @@ const OptionRows<Request>& other_rows() {
 
 }  // namespace
 
-OptionValue<RequestOptions> markers_to_keep() {
-  return {"M,M", "", Arity::kOne,
-          [](const auto& texts, const auto&, Request& options) -> std::string {
-            const auto markers =
-                texts.front() == "all" ? MarkerList{} : MarkerList::parse(texts.front());
-            if (!markers)
-              return in_quotes(texts.front()) + " does not list markers, such as 2,inlet";
-            options.keep = *markers;
+OptionValue<RequestOptions> marker_value(std::string_view name) {
+  const wire::MarkerOption& option = marker_option(name);
+  return {option.unit, "", option.repeats ? Arity::kList : Arity::kOne,
+          [&option](const auto& texts, const auto&, Request& options) -> std::string {
+            option.clear(options.markers);
+            for (const std::string& text : texts)
+              if (std::string fault = option.read(text, options.markers); !fault.empty())
+                return fault;
             return "";
           }};
-}
-
-OptionValue<RequestOptions> periodic_sides() {
-  return {"M:M,M:M", "", Arity::kOne,
-          [](const auto& texts, const auto&, Request& options) -> std::string {
-            auto pairs = parse_marker_pairs(texts.front());
-            if (!pairs)
-              return in_quotes(texts.front()) + " is not pairs of markers, such as left:right,4:2";
-            options.periodic = std::move(*pairs);
-            return "";
-          }};
-}
-
-OptionValue<RequestOptions> wall_layers() {
-  return list("M:first=H,ratio=Q,rows=N,region=ID", &Request::layers);
 }
 
 const OptionRows<Request>& size_rows() {
@@ -205,12 +182,8 @@ const OptionRows<Request>& size_rows() {
          "of "
          "an earlier mesh; or FILE[:BAND], the values of a raster. May be repeated",
          "", list("NAME=KIND", &Request::fields, FieldOption::parse), "size.fields"},
-        {"edge-at", "",
-         "Maximum length LEN of edges on segments with the marker M, a number or a name. With "
-         "--gradation G, the length grows from there by at most G per unit of distance. May be "
-         "repeated, once per marker",
-         "", list("marker=M:LEN", &Request::edge_at), "size.at"},
     };
+    all.push_back(of_markers("edge-at"));
     add_named("size.", all);
     return noted(std::move(all));
   }();
@@ -222,7 +195,9 @@ const OptionRows<Request>& name_rows() {
       {"names", "",
        "Name a marker or a region: marker=2:inlet, region=1:fluid. Replaces the name in the file, "
        "if there is one. May be repeated",
-       "", list("KIND=ID:NAME", &Request::names)},
+       "",
+       list("KIND=ID:NAME", &Request::names,
+            [](const std::string& text, const auto&) { return NameOption::parse(text); })},
   };
   return rows;
 }
@@ -253,16 +228,13 @@ std::string option_of(std::string_view field, const RequestOptions& options) {
   }
   if (set_by == nullptr) return parts;
   const auto entry = index_in(field, set_by->field);
-  if (entry && set_by->field == "size.fields" && *entry < options.fields.size())
+  if (!entry) return name_of(*set_by);
+  if (set_by->field == "size.fields" && *entry < options.fields.size())
     return name_of(*set_by) + " " + options.fields[*entry].name;
-  if (entry && set_by->field == "size.at" && *entry < options.edge_at.size()) {
-    const EdgeAt& at = options.edge_at[*entry];
-    return name_of(*set_by) + " marker=" + (at.name.empty() ? std::to_string(at.marker) : at.name);
-  }
-  if (entry && set_by->field == "quality.periodic" && *entry < options.periodic.size())
-    return name_of(*set_by) + " " + options.periodic[*entry].text();
-  if (entry && set_by->field == "quality.layers" && *entry < options.layers.size())
-    return name_of(*set_by) + " " + options.layers[*entry].marker;
+  for (const wire::MarkerOption& option : wire::marker_options())
+    if (option.path == set_by->field)
+      if (const std::string text = option.entry(options.markers, *entry); !text.empty())
+        return name_of(*set_by) + " " + text;
   return name_of(*set_by);
 }
 

@@ -29,12 +29,8 @@ OptionValue<Options> fill_value(PolygonFill Options::*field) {
                         {"difference", PolygonFill::kDifference}});
 }
 
-// RequestOptions::keep.
-OptionValue<RequestOptions> markers_to_keep();
-// RequestOptions::periodic.
-OptionValue<RequestOptions> periodic_sides();
-// RequestOptions::layers.
-OptionValue<RequestOptions> wall_layers();
+// That of an option of wire/marker_options.h.
+OptionValue<RequestOptions> marker_value(std::string_view name);
 
 // What was given for a field of the request, such as "size.fields[0].name", as errors call it:
 // "--field d", or "field d" if a manifest gave it. Empty if no option was.

@@ -220,13 +220,14 @@ void add_check(CLI::App& app, Chosen& chosen) {
       check,
       {"keep", "WEFT_KEEP_SEGMENTS",
        "Segments that have no new points, as given to `weft mesh`; with it goes --max-unrefined",
-       "", markers_to_keep()},
+       "", marker_value("keep")},
       options.size);
   add_row(check,
           {"periodic", "WEFT_PERIODIC", "Sides that repeat each other, as given to `weft mesh`", "",
-           periodic_sides()},
+           marker_value("periodic")},
           options.size);
-  add_row(check, {"layers", "", "Layers along walls, as given to `weft mesh`", "", wall_layers()},
+  add_row(check,
+          {"layers", "", "Layers along walls, as given to `weft mesh`", "", marker_value("layers")},
           options.size);
   add_row(check,
           {"fill", "WEFT_FILL", "What was meshed where polygons overlap, as given to `weft mesh`",

@@ -56,7 +56,8 @@ void limit_gradation(const std::function<double(check::Vec2)>& size, const Mesh&
 
 Result<MakeAreaBound> area_bound(const RequestOptions& size, const std::string& name,
                                  const Mesh& mesh) {
-  if (size.size.empty() && size.edge.empty() && size.edge_at.empty()) return MakeAreaBound();
+  if (size.size.empty() && size.edge.empty() && size.markers.edge_at.empty())
+    return MakeAreaBound();
   const Domain domain = domain_of_mesh(name, mesh.view());
   auto spec = checker_size(size, domain, nullptr);
   if (!spec) return tl::unexpected(spec.error());

@@ -75,17 +75,17 @@ Result<check::Requirements> requirements_of(const CheckOptions& options, const I
   auto size = checker_size(options.size, input.domain, input.projection.get());
   if (!size) return tl::unexpected(size.error());
   requirements.size = std::move(*size);
-  if (options.size.keep) {
-    auto kept = options.size.keep->numbers(input.domain.names.markers);
+  if (options.size.markers.keep) {
+    auto kept = options.size.markers.keep->numbers(input.domain.names.markers);
     if (!kept) return tl::unexpected(kept.error());
     requirements.keep = std::move(*kept);
   }
-  for (const MarkerPair& pair : options.size.periodic) {
+  for (const MarkerPair& pair : options.size.markers.periodic) {
     const auto sides = pair.numbers(input.domain.names.markers);
     if (!sides) return tl::unexpected(sides.error());
     requirements.periodic.push_back(*sides);
   }
-  for (const WallLayers& layers : options.size.layers) {
+  for (const WallLayers& layers : options.size.markers.layers) {
     const auto marker = layers.number(input.domain.names.markers);
     if (!marker) return tl::unexpected(marker.error());
     requirements.layers.push_back({*marker, layers.first, layers.ratio, layers.rows,

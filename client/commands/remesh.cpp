@@ -36,11 +36,11 @@ Result<Asked> ask_for(const RemeshOptions& options, const MeshPatch& patch) {
   auto input = projected(options.mesh, std::move(domain), options.output.projection);
   if (!input) return tl::unexpected(input.error());
   RequestOptions request = options.request_options;
-  const bool keeps_all =
-      request.keep && request.keep->markers.empty() && request.keep->names.empty();
+  auto& keep = request.markers.keep;
+  const bool keeps_all = keep && keep->markers.empty() && keep->names.empty();
   if (patch.sides > 0 && !keeps_all) {  // a part that touches nothing has no outline
-    if (!request.keep) request.keep.emplace();
-    request.keep->markers.push_back(patch.outline);
+    if (!keep) keep.emplace();
+    keep->markers.push_back(patch.outline);
   }
   auto with = with_size(request, input->domain, input->projection.get());
   if (!with) return tl::unexpected(with.error());

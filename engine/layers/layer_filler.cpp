@@ -2,6 +2,7 @@
 #include "engine/layers/layer_filler.h"
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -61,9 +62,8 @@ std::vector<LayerFiller::LineEdge> LayerFiller::edges_in_order() const {
 }
 
 std::uint32_t LayerFiller::add_vertex(Point p) {
-  coordinates_.insert(coordinates_.end(), {p.x, p.y});
   chunk_.coordinates.insert(chunk_.coordinates.end(), {p.x, p.y});
-  return static_cast<std::uint32_t>(coordinates_.size() / 2 - 1);
+  return static_cast<std::uint32_t>(sent_ + chunk_.coordinates.size() / 2 - 1);
 }
 
 // A corner of the wall, which the mesh has already where layers end in a point or walls touch.
@@ -80,31 +80,30 @@ std::uint32_t LayerFiller::wall_vertex(std::uint32_t spoke) {
   return found->second = vertex;
 }
 
-LayerFiller::Column LayerFiller::column(std::uint32_t layers, std::uint32_t wall,
+LayerFiller::Column LayerFiller::column(std::uint32_t layers, std::uint32_t wall, Point base,
                                         std::uint32_t end) {
-  const std::vector<double>& heights = heights_[layers];
-  const Point base = at(wall), tip = at(end);
-  Column column{wall};
-  for (std::size_t i = 0; i + 1 < heights.size(); ++i)
-    column.push_back(wall == end ? wall
-                                 : add_vertex({base.x + heights[i] * (tip.x - base.x),
-                                               base.y + heights[i] * (tip.y - base.y)}));
-  column.push_back(end);
+  const Point tip = at(end);
+  Column column{{wall}, {base}};
+  for (const double height : std::span(heights_[layers]).first(heights_[layers].size() - 1)) {
+    const Point place{base.x + height * (tip.x - base.x), base.y + height * (tip.y - base.y)};
+    column.vertices.push_back(wall == end ? wall : add_vertex(place));
+    column.places.push_back(place);
+  }
+  column.vertices.push_back(end);
+  column.places.push_back(tip);
   return column;
 }
 
-const LayerFiller::Column& LayerFiller::column_of_spoke(std::uint32_t layers, std::uint32_t spoke,
-                                                        std::uint32_t end) {
-  const auto [found, is_new] = columns_.try_emplace(spoke);
-  if (!is_new) return found->second;
+LayerFiller::Column LayerFiller::column_of_spoke(std::uint32_t layers, std::uint32_t spoke,
+                                                 std::uint32_t end) {
   const Spoke& s = plan_.spokes()[spoke];
   const std::uint32_t wall = s.tip == s.base ? end : wall_vertex(spoke);
   if (s.tip == s.base) wall_vertices_.emplace(s.vertex, end);
-  found->second = column(layers, wall, end);
+  Column made = column(layers, wall, s.base, end);
   if (s.side != kNone)
-    for (std::size_t i = 0; i + 1 < found->second.size(); ++i)
-      add_edge(found->second[i], found->second[i + 1], s.side);
-  return found->second;
+    for (std::size_t i = 0; i + 1 < made.vertices.size(); ++i)
+      add_edge(made.vertices[i], made.vertices[i + 1], s.side);
+  return made;
 }
 
 void LayerFiller::add_edge(std::uint32_t a, std::uint32_t b, std::uint32_t subsegment) {
@@ -112,29 +111,31 @@ void LayerFiller::add_edge(std::uint32_t a, std::uint32_t b, std::uint32_t subse
   chunk_.edges.push_back({a, b, s.segment, s.marker});
 }
 
-void LayerFiller::add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c,
-                               std::int32_t region) {
-  chunk_.triangles.insert(chunk_.triangles.end(), {a, b, c});
+void LayerFiller::add_triangle(const std::array<std::uint32_t, 3>& corners, std::int32_t region) {
+  chunk_.triangles.insert(chunk_.triangles.end(), corners.begin(), corners.end());
   chunk_.regions.push_back(region);
-  for (const std::uint32_t v : {a, b, c}) chunk_.box.add(at(v));
 }
 
 // The triangles between two columns; of each quadrilateral's diagonals the shorter one is an edge.
 void LayerFiller::fill(const Column& from, const Column& to, std::int32_t region) {
-  for (std::size_t i = 0; i + 1 < from.size(); ++i) {
-    const std::uint32_t a = from[i], b = to[i], c = to[i + 1], d = from[i + 1];
+  for (const Column* column : {&from, &to})
+    for (const Point p : column->places) chunk_.box.add(p);
+  for (std::size_t i = 0; i + 1 < from.vertices.size(); ++i) {
+    const std::uint32_t a = from.vertices[i], d = from.vertices[i + 1];
+    const std::uint32_t b = to.vertices[i], c = to.vertices[i + 1];
     if (a == b) {
-      add_triangle(a, c, d, region);
+      add_triangle({a, c, d}, region);
     } else if (a == d) {
-      add_triangle(a, b, c, region);
+      add_triangle({a, b, c}, region);
     } else if (b == c) {
-      add_triangle(a, b, d, region);
-    } else if (distance2(at(a), at(c)) <= distance2(at(b), at(d))) {
-      add_triangle(a, b, c, region);
-      add_triangle(a, c, d, region);
+      add_triangle({a, b, d}, region);
+    } else if (distance2(from.places[i], to.places[i + 1]) <=
+               distance2(to.places[i], from.places[i + 1])) {
+      add_triangle({a, b, c}, region);
+      add_triangle({a, c, d}, region);
     } else {
-      add_triangle(a, b, d, region);
-      add_triangle(b, c, d, region);
+      add_triangle({a, b, d}, region);
+      add_triangle({b, c, d}, region);
     }
   }
 }
@@ -173,25 +174,30 @@ std::optional<Error> LayerFiller::finish(const ExecutionContext& context, Summar
                  "the mesh has up to " + std::to_string(most) +
                      " triangles with its layers, more than the limit of " +
                      std::to_string(context.budget().triangle_limit)};
-  Column last;
+  Column first, last;  // of the wall; `first` is at spoke `from`, where the wall may close
+  std::uint32_t from = kNone;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const LineEdge& edge = edges[i];
     const LinePiece& piece = plan_.pieces()[edge.piece];
     const bool begins = i == 0 || edges[i - 1].piece != edge.piece;
     const bool ends = i + 1 == edges.size() || edges[i + 1].piece != edge.piece;
-    if (begins) last = column_of_spoke(piece.layers, piece.first, edge.first);
+    if (begins && (i == 0 || plan_.pieces()[edges[i - 1].piece].last != piece.first)) {
+      from = piece.first;
+      first = last = column_of_spoke(piece.layers, from, edge.first);
+    }
     Column next;
-    if (ends) {
+    if (ends && piece.last == from) {
+      next = std::move(first);
+    } else if (ends) {
       next = column_of_spoke(piece.layers, piece.last, edge.last);
     } else if (piece.wall == kNone) {
-      next = column(piece.layers, last.front(), edge.last);
+      next = column(piece.layers, last.vertices.front(), last.places.front(), edge.last);
     } else {
       const Point a = plan_.spokes()[piece.first].base, b = plan_.spokes()[piece.last].base;
-      next =
-          column(piece.layers,
-                 add_vertex({a.x + edge.to * (b.x - a.x), a.y + edge.to * (b.y - a.y)}), edge.last);
+      const Point base{a.x + edge.to * (b.x - a.x), a.y + edge.to * (b.y - a.y)};
+      next = column(piece.layers, add_vertex(base), base, edge.last);
     }
-    if (piece.wall != kNone) add_edge(last.front(), next.front(), piece.wall);
+    if (piece.wall != kNone) add_edge(last.vertices.front(), next.vertices.front(), piece.wall);
     fill(last, next, regions_[piece.layers]);
     last = std::move(next);
     constexpr std::size_t kEnough = kMaxChunkBytes / 2;  // an edge adds far less than that

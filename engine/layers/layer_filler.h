@@ -42,8 +42,11 @@ class LayerFiller final : public ChunkSink {
   std::optional<Error> finish(const ExecutionContext& context, Summary& summary);
 
  private:
-  // The vertices from the wall to the line, both included; all the same in a point.
-  using Column = std::vector<std::uint32_t>;
+  // From the wall to the line, both included; all the same in a point.
+  struct Column {
+    std::vector<std::uint32_t> vertices;
+    std::vector<Point> places;
+  };
   // An edge of the mesh on the line, from the first to the last spoke of its piece.
   struct LineEdge {
     std::uint32_t piece = 0;
@@ -57,10 +60,10 @@ class LayerFiller final : public ChunkSink {
   std::vector<LineEdge> edges_in_order() const;
   std::uint32_t add_vertex(Point p);
   std::uint32_t wall_vertex(std::uint32_t spoke);
-  Column column(std::uint32_t layers, std::uint32_t wall, std::uint32_t end);
-  const Column& column_of_spoke(std::uint32_t layers, std::uint32_t spoke, std::uint32_t end);
+  Column column(std::uint32_t layers, std::uint32_t wall, Point base, std::uint32_t end);
+  Column column_of_spoke(std::uint32_t layers, std::uint32_t spoke, std::uint32_t end);
   void add_edge(std::uint32_t a, std::uint32_t b, std::uint32_t subsegment);
-  void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::int32_t region);
+  void add_triangle(const std::array<std::uint32_t, 3>& corners, std::int32_t region);
   void fill(const Column& from, const Column& to, std::int32_t region);
   std::optional<Error> send(const ExecutionContext& context, Summary& summary);
 
@@ -72,12 +75,11 @@ class LayerFiller final : public ChunkSink {
   std::vector<std::vector<double>> heights_;  // per layers
   std::vector<std::int32_t> regions_;         // per layers
 
-  std::vector<double> coordinates_;  // of all vertices of the mesh
+  std::vector<double> coordinates_;  // of the vertices of the mesh, without layers
   std::vector<Chunk::Edge> line_;
   // Vertices of the mesh by the points of the PSLG with holes.
   std::unordered_map<std::uint32_t, std::uint32_t> vertex_of_point_;
   std::unordered_map<std::uint32_t, std::uint32_t> wall_vertices_;  // by vertices of the domain
-  std::unordered_map<std::uint32_t, Column> columns_;               // by spokes
   std::size_t sent_ = 0;                                            // vertices
   Chunk chunk_;                                                     // not sent yet
   Sha256 digest_;

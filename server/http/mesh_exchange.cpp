@@ -62,6 +62,11 @@ void add_warnings(const v1::Summary& summary, const SentDomain& sent, std::uint6
     warnings.push_back(fmt::format("triangles that miss a bound without exemption: {}", count));
   if (most_triangles > 0 && summary.triangles() > most_triangles)
     warnings.push_back("the domain alone, without refinement, has more than max_triangles");
+  if (const v1::LayerSummary& layers = summary.layers(); layers.cut() > 0)
+    warnings.push_back(
+        fmt::format("layers thinner than asked for at {} corners for want of room, the least "
+                    "{:.3g} thick at ({}, {})",
+                    layers.cut(), layers.least_thickness(), layers.x(), layers.y()));
 }
 
 void warn(std::vector<std::string> warnings, Response& head) {

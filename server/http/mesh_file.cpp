@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "files/formats/mesh_formats.h"
+#include "wire/chunk_view.h"
 
 namespace weft::server {
 namespace {
@@ -14,11 +15,6 @@ namespace {
 // Bytes of each array of a spool, and of its pages, that may stay in memory.
 constexpr std::size_t kSmallArray = std::size_t{64} << 10;
 constexpr std::size_t kSmallPages = std::size_t{1} << 20;
-
-template <class T>
-std::span<const T> span_of(const google::protobuf::RepeatedField<T>& field) {
-  return {field.data(), static_cast<std::size_t>(field.size())};
-}
 
 tl::unexpected<Problem> no_room(const std::string& why) {
   return tl::unexpected(Problem{.status = 507, .reason = "STORE_FULL", .detail = why});
@@ -45,14 +41,7 @@ Outcome<std::optional<v1::Summary>> take_message(const grpc::ByteBuffer& message
   if (response.has_summary()) return std::move(*response.mutable_summary());
   if (!response.has_chunk()) return std::nullopt;
   const v1::Chunk& chunk = response.chunk();
-  const auto taken = spool.append({.coordinates = span_of(chunk.coordinates()),
-                                   .triangles = span_of(chunk.triangles()),
-                                   .regions = span_of(chunk.regions()),
-                                   .edges = span_of(chunk.edges()),
-                                   .edge_markers = span_of(chunk.edge_markers()),
-                                   .input_points = span_of(chunk.input_points()),
-                                   .input_point_markers = {},
-                                   .edge_bulges = span_of(chunk.edge_bulges())});
+  const auto taken = spool.append(wire::view_of(chunk));
   if (!taken) return no_room("the server has no room for the mesh while it arrives");
   return std::nullopt;
 }

@@ -13,6 +13,7 @@
 #include "files/geo/projection.h"
 #include "files/message/field_path.h"
 #include "server/http/formats.h"
+#include "wire/marker_options.h"
 #include "wire/named_options.h"
 
 namespace weft::server {
@@ -96,54 +97,6 @@ std::vector<Parameter> own_parameters() {
        "size",
        [](const std::string& text, MeshWish& wish) {
          return read_size(text, v1::MEASURE_AREA, wish);
-       }},
-      {"edge_at",
-       Type::kText,
-       "Maximum length of edges on segments with a marker, a number or a name: marker=2:500",
-       {},
-       true,
-       Use::kDomain,
-       "size.at",
-       [](const std::string& text, MeshWish& wish) {
-         const auto one = files::EdgeAt::parse(text);
-         if (one) wish.edge_at.push_back(*one);
-         return one ? "" : one.error();
-       }},
-      {"keep",
-       Type::kText,
-       "Segments that stay as they are, by their markers, numbers or names: 2,inlet, or all",
-       {},
-       false,
-       Use::kDomain,
-       "quality.keep",
-       [](const std::string& text, MeshWish& wish) {
-         wish.keep = text == "all" ? files::MarkerList{} : files::MarkerList::parse(text);
-         return wish.keep ? "" : in_quotes(text) + " does not list markers, such as 2,inlet";
-       }},
-      {"periodic",
-       Type::kText,
-       "Sides that repeat each other, pairs of their markers, numbers or names: left:right,4:2",
-       {},
-       false,
-       Use::kDomain,
-       "quality.periodic",
-       [](const std::string& text, MeshWish& wish) {
-         auto pairs = files::parse_marker_pairs(text);
-         if (!pairs) return in_quotes(text) + " is not pairs of markers, such as left:right,4:2";
-         wish.periodic = std::move(*pairs);
-         return std::string();
-       }},
-      {"layers",
-       Type::kText,
-       "Rows of thin triangles along the segments with a marker: wall:first=1e-5,ratio=1.2,rows=20",
-       {},
-       true,
-       Use::kDomain,
-       "quality.layers",
-       [](const std::string& text, MeshWish& wish) {
-         const auto one = files::WallLayers::parse(text);
-         if (one) wish.layers.push_back(*one);
-         return one ? "" : one.error();
        }},
       {"names",
        Type::kText,
@@ -310,6 +263,20 @@ Parameter named(const wire::NamedOption& option) {
           read};
 }
 
+// One that names markers.
+Parameter of_markers(const wire::MarkerOption& option) {
+  return {with_underscores(option.name),
+          Type::kText,
+          option.about + ". Form: " + option.unit,
+          {},
+          option.repeats,
+          Use::kDomain,
+          option.path,
+          [&option](const std::string& text, MeshWish& wish) {
+            return option.read(text, wish.markers);
+          }};
+}
+
 Problem bad_parameter(const std::string& name, const std::string& why) {
   return {.status = 400, .reason = "BAD_OPTION", .detail = name + ": " + why, .field = name};
 }
@@ -332,6 +299,8 @@ Problem no_such_parameter(const std::string& name) {
 const std::vector<Parameter>& mesh_parameters() {
   static const std::vector<Parameter> all = [] {
     std::vector<Parameter> parameters = own_parameters();
+    for (const wire::MarkerOption& option : wire::marker_options())
+      parameters.push_back(of_markers(option));
     for (const wire::NamedOption& option : wire::named_options())
       if (option.path != "want_quadtree") parameters.push_back(named(option));  // no file has it
     return parameters;
@@ -372,37 +341,10 @@ tl::expected<MeshWish, Problem> read_wish(const Query& query, ParameterUses uses
 }
 
 std::optional<Problem> complete(const files::NameTable& markers, MeshWish& wish) {
-  for (const files::EdgeAt& given : wish.edge_at) {
-    const auto marker = given.name.empty() ? files::Result<std::int32_t>(given.marker)
-                                           : files::find_marker(given.name, markers);
-    if (!marker) return bad_parameter("edge_at", marker.error().message);
-    v1::SizeAt& at = *wish.request.mutable_size()->add_at();
-    at.set_marker(*marker);
-    at.set_max_edge(given.max_edge);
-  }
-  if (wish.keep) {
-    const auto kept = wish.keep->numbers(markers);
-    if (!kept) return bad_parameter("keep", kept.error().message);
-    wish.request.mutable_quality()->mutable_keep()->mutable_markers()->Add(kept->begin(),
-                                                                           kept->end());
-  }
-  for (const files::MarkerPair& pair : wish.periodic) {
-    const auto sides = pair.numbers(markers);
-    if (!sides) return bad_parameter("periodic", sides.error().message);
-    v1::PeriodicSides& both = *wish.request.mutable_quality()->add_periodic();
-    both.set_from(sides->front());
-    both.set_to(sides->back());
-  }
-  for (const files::WallLayers& given : wish.layers) {
-    const auto marker = given.number(markers);
-    if (!marker) return bad_parameter("layers", marker.error().message);
-    v1::Layers& layers = *wish.request.mutable_quality()->add_layers();
-    layers.set_marker(*marker);
-    layers.set_first(given.first);
-    layers.set_ratio(given.ratio);
-    layers.set_rows(given.rows);
-    if (given.region) layers.set_region(*given.region);
-  }
+  if (const auto fault = wire::fill(wish.markers, markers, wish.request))
+    for (const wire::MarkerOption& option : wire::marker_options())
+      if (files::is_within(fault->field, option.path))
+        return bad_parameter(with_underscores(option.name), fault->error.message);
   if (const auto found = find_open_boundaries(wish.writing, markers); !found)
     return bad_parameter("open_boundary", found.error().message);
   return std::nullopt;

@@ -14,15 +14,12 @@
 #include <utility>
 #include <vector>
 
-#include "files/formats/edge_at.h"
-#include "files/formats/marker_list.h"
-#include "files/formats/marker_pairs.h"
 #include "files/formats/mesh_formats.h"
 #include "files/formats/name_option.h"
-#include "files/formats/wall_layers.h"
 #include "files/geo/projection_options.h"
 #include "server/console/problem.h"
 #include "weft/v1/mesh_service.pb.h"
+#include "wire/marker_options.h"
 
 namespace weft::server {
 
@@ -35,10 +32,7 @@ struct MeshWish {
   files::PolygonFill fill = files::PolygonFill::kUnion;
   files::ProjectionOptions projection{};
   files::MeshWriteOptions writing{};
-  std::vector<files::EdgeAt> edge_at{};
-  std::optional<files::MarkerList> keep{};  // without any: all segments
-  std::vector<files::MarkerPair> periodic{};
-  std::vector<files::WallLayers> layers{};
+  wire::MarkerOptions markers{};
   std::vector<files::NameOption> names{};
 };
 

@@ -57,6 +57,7 @@ struct Case {
   bool on_lattice = true;
   bool raster = false;
   bool region = false;
+  std::uint32_t rows = 0;  // of layers along all of the square
 
   friend void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 };
@@ -77,6 +78,7 @@ MeshRequest request_of(const Case& c) {
   if (c.raster) request.size = waves();
   if (!c.size.empty()) request.size = c.size;
   if (c.region) request.pslg.regions.push_back({.at = {50, 50}, .max_area = 0.01});
+  if (c.rows > 0) request.layers = {{.marker = 0, .first = 1e-4, .ratio = 1, .rows = c.rows}};
   request.min_angle_deg = c.angle;
   if (!c.on_lattice) request.placement = Placement::kCircumcentre;
   return request;
@@ -131,7 +133,10 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"ring", "", "0.002+0.01*abs(hypot(x-50,y-50)-30)"},
         Case{"shortWaves", "", "0.01*(1.2+sin(3*x)*sin(3*y))"},
         Case{.name = "raster", .model = "", .size = "", .raster = true},
-        Case{.name = "region", .model = "", .size = "", .region = true}),
+        Case{.name = "region", .model = "", .size = "", .region = true},
+        Case{.name = "layers", .model = "", .size = "1", .rows = 200},
+        Case{.name = "layersFine", .model = "", .size = "1e-4+1e-3*y", .rows = 100},
+        Case{.name = "layersFew", .model = "", .size = "0.01", .rows = 8}),
     [](const auto& info) { return info.param.name; });
 
 }  // namespace

@@ -26,18 +26,20 @@ TEST(MarkerList, HoldsNumbersAndNames) {
 TEST(MarkersToKeep, ReachTheRequestAsNumbers) {
   Domain domain = square_domain(1);
   domain.names.markers = {{3, "inlet"}};
-  const auto options = with_size({.keep = MarkerList{{5}, {"inlet"}}}, domain);
+  const auto options = with_size({.markers = {.keep = MarkerList{{5}, {"inlet"}}}}, domain);
   ASSERT_TRUE(options) << options.error().message;
   const auto request = make_request(domain, *options);
   const auto& markers = request.quality().keep().markers();
   EXPECT_EQ(std::vector<std::int32_t>(markers.begin(), markers.end()),
             (std::vector<std::int32_t>{5, 3}));
   EXPECT_FALSE(make_request(domain, {}).quality().has_keep());
-  EXPECT_TRUE(
-      make_request(domain, with_size({.keep = MarkerList{}}, domain).value()).quality().has_keep());
-  EXPECT_EQ(
-      with_size({.keep = MarkerList{{}, {"inlot"}}, .given = {"keep"}}, domain).error().message,
-      "--keep: no marker of the domain is named 'inlot': did you mean `inlet`?");
+  EXPECT_TRUE(make_request(domain, with_size({.markers = {.keep = MarkerList{}}}, domain).value())
+                  .quality()
+                  .has_keep());
+  EXPECT_EQ(with_size({.markers = {.keep = MarkerList{{}, {"inlot"}}}, .given = {"keep"}}, domain)
+                .error()
+                .message,
+            "--keep: no marker of the domain is named 'inlot': did you mean `inlet`?");
 }
 
 }  // namespace

@@ -40,12 +40,12 @@ std::vector<std::array<std::int32_t, 2>> sent(const Domain& domain, const Reques
 TEST(PeriodicOption, ReachTheRequestAsNumbers) {
   Domain domain = square_domain(1);
   domain.names.markers = {{3, "inlet"}};
-  RequestOptions given{.periodic = {{"5", "inlet"}, {"0", "2"}}};
+  RequestOptions given{.markers = {.periodic = {{"5", "inlet"}, {"0", "2"}}}};
   const auto options = with_size(given, domain);
   ASSERT_TRUE(options) << options.error().message;
   EXPECT_EQ(sent(domain, *options), (std::vector{std::array{5, 3}, std::array{0, 2}}));
   EXPECT_TRUE(sent(domain, {}).empty());
-  given.periodic.push_back({"1", "inlot"});
+  given.markers.periodic.push_back({"1", "inlot"});
   given.given = {"periodic"};
   EXPECT_EQ(with_size(given, domain).error().message,
             "--periodic 1:inlot: no marker of the domain is named 'inlot': did you mean `inlet`?");
@@ -55,9 +55,9 @@ TEST(PeriodicOption, ReachTheRequestAsNumbers) {
 
 TEST(PeriodicOption, AreReadFromText) {
   RequestOptions options;
-  EXPECT_EQ(periodic_sides().read({"left:right"}, "", options), "");
-  EXPECT_EQ(options.periodic.size(), 1u);
-  EXPECT_EQ(periodic_sides().read({"left"}, "", options),
+  EXPECT_EQ(marker_value("periodic").read({"left:right"}, "", options), "");
+  EXPECT_EQ(options.markers.periodic.size(), 1u);
+  EXPECT_EQ(marker_value("periodic").read({"left"}, "", options),
             "'left' is not pairs of markers, such as left:right,4:2");
 }
 

@@ -32,7 +32,8 @@ TEST(LayersOfARequest, HaveTheNumbersOfTheirMarkers) {
   Domain domain = square_domain(1);
   domain.names.markers = {{3, "wall"}};
   RequestOptions given;
-  ASSERT_EQ(wall_layers().read({"wall:first=1,rows=2", "-4:first=2,rows=3"}, "", given), "");
+  ASSERT_EQ(marker_value("layers").read({"wall:first=1,rows=2", "-4:first=2,rows=3"}, "", given),
+            "");
   const auto options = with_size(given, domain);
   ASSERT_TRUE(options) << options.error().message;
   const auto request = make_request(domain, *options);
@@ -40,7 +41,7 @@ TEST(LayersOfARequest, HaveTheNumbersOfTheirMarkers) {
   EXPECT_EQ(request.quality().layers(0).marker(), 3);
   EXPECT_EQ(request.quality().layers(1).marker(), -4);
   EXPECT_EQ(request.quality().layers(1).rows(), 3u);
-  ASSERT_EQ(wall_layers().read({"wal:first=1,rows=2"}, "", given), "");
+  ASSERT_EQ(marker_value("layers").read({"wal:first=1,rows=2"}, "", given), "");
   given.given = {"layers"};
   EXPECT_EQ(with_size(given, domain).error().message,
             "--layers wal: no marker of the domain is named 'wal': did you mean `wall`?");

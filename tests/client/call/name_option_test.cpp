@@ -57,12 +57,12 @@ TEST(RequestOfNames, HasThemAndTheMarkersThatAreMeant) {
   Domain domain = square_domain(1);
   domain.names.markers = {{3, "inlet"}, {4, "w\u00e4nd"}};
   domain.names.regions = {{-1, "fluid"}};
-  const auto options = with_size({.edge_at = {{0, 0.5, "inlet"}}}, domain);
+  const auto options = with_size({.markers = {.edge_at = {{0, 0.5, "inlet"}}}}, domain);
   ASSERT_TRUE(options) << options.error().message;
   const auto request = make_request(domain, *options);
   EXPECT_EQ(request.size().at(0).marker(), 3);
   EXPECT_EQ(names_of(request.domain()), domain.names);
-  const auto unknown = with_size({.edge_at = {{0, 0.5, "inlot"}}}, domain);
+  const auto unknown = with_size({.markers = {.edge_at = {{0, 0.5, "inlot"}}}}, domain);
   ASSERT_FALSE(unknown);
   EXPECT_EQ(unknown.error().message,
             "no marker of the domain is named 'inlot': did you mean `inlet`?");

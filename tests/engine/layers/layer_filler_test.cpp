@@ -165,6 +165,14 @@ TEST(LayersInAChannel, TakeEightTenthsOfItAndSaySo) {
   EXPECT_GE(made.summary.layers->least_thickness, 0.3 * width);
 }
 
+// In a sharp corner, spokes of a wall's ends lean over more than the wall is long.
+TEST(LayersOfASharpCorner, DoNotTurnOver) {
+  const Pslg blade = ring({{0.26, 0.52}, {-0.37, -0.26}, {-0.39, -0.73}});
+  const Sound made =
+      sound({.pslg = blade, .layers = {{1, 0.036, 1, 4}, {2, 0.036, 1, 4}, {3, 0.036, 1, 4}}});
+  EXPECT_GT(made.summary.layers->triangles, 0u);
+}
+
 TEST(LayersOfNeighbours, ShareTheGapBetweenThem) {
   Pslg pslg = ring({{0, 0}, {10, 0}, {10, 5}, {0, 5}});
   add(pslg, {{2, 2}, {4, 2}, {4, 4}, {2, 4}}, 9);
