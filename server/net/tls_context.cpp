@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <openssl/err.h>
 #include <openssl/ssl.h>
+#include <sys/stat.h>
 
 #include <cstring>
 #include <utility>
@@ -73,24 +74,25 @@ TlsContext::TlsContext(TlsOptions options, TlsProtocol protocol, Logger log,
     : options_(std::move(options)),
       protocol_(protocol),
       log_(std::move(log)),
-      context_(std::move(context)),
-      seen_(times()) {}
+      context_(std::move(context)) {}
 
-std::vector<std::filesystem::file_time_type> TlsContext::times() const {
-  std::vector<std::filesystem::file_time_type> times;
-  std::error_code error;
-  for (const std::string& file : {options_.certificate, options_.key, options_.client_ca})
-    times.push_back(std::filesystem::last_write_time(file, error));
-  return times;
+std::vector<TlsContext::FileVersion> TlsContext::versions() const {
+  std::vector<FileVersion> versions;
+  for (const std::string& file : {options_.certificate, options_.key, options_.client_ca}) {
+    struct stat status {};
+    if (::stat(file.c_str(), &status) != 0) status = {};
+    versions.push_back({status.st_ino, status.st_mtim.tv_sec, status.st_mtim.tv_nsec});
+  }
+  return versions;
 }
 
 std::shared_ptr<ssl::context> TlsContext::current() {
   const auto now = std::chrono::steady_clock::now();
   if (now < next_look_) return context_;
   next_look_ = now + kBetweenLooks;
-  auto times = this->times();
-  if (times == seen_) return context_;
-  seen_ = std::move(times);
+  auto versions = this->versions();
+  if (versions == seen_) return context_;
+  seen_ = std::move(versions);
   if (auto context = load(options_, protocol_))
     context_ = std::move(*context);
   else

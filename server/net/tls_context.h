@@ -10,7 +10,8 @@
 
 #include <boost/asio/ssl/context.hpp>
 #include <chrono>
-#include <filesystem>
+#include <cstdint>
+#include <ctime>
 #include <memory>
 #include <string>
 #include <tl/expected.hpp>
@@ -41,15 +42,23 @@ class TlsContext {
   std::shared_ptr<boost::asio::ssl::context> current();
 
  private:
+  // Files that are renamed into place within a tick of the clock have one time, but two numbers.
+  struct FileVersion {
+    std::uint64_t inode = 0;
+    std::time_t seconds = 0;
+    std::int64_t nanoseconds = 0;
+    friend bool operator==(const FileVersion&, const FileVersion&) = default;
+  };
+
   TlsContext(TlsOptions options, TlsProtocol protocol, Logger log,
              std::shared_ptr<boost::asio::ssl::context> context);
-  std::vector<std::filesystem::file_time_type> times() const;
+  std::vector<FileVersion> versions() const;
 
   TlsOptions options_;
   TlsProtocol protocol_;
   Logger log_;
   std::shared_ptr<boost::asio::ssl::context> context_;
-  std::vector<std::filesystem::file_time_type> seen_;
+  std::vector<FileVersion> seen_;  // none before the first look
   std::chrono::steady_clock::time_point next_look_{};
 };
 

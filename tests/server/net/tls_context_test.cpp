@@ -133,6 +133,17 @@ TEST_F(Tls, TakesAnotherCaOfClientsWithoutARestart) {
   EXPECT_TRUE(eventually([&] { return ask(connect(server, ca_, ann)).ok(); }));
 }
 
+TEST_F(Tls, SeesARenewalWhoseFileIsAsOldAsTheFileBefore) {
+  LoggedServer server(options(files(ca_.issue(kServer))));
+  const auto time = std::filesystem::last_write_time(folder_ / "server.pem");
+  ASSERT_TRUE(ask(connect(server, ca_)).ok());
+  const TestCertificate renewed = other_ca_.issue(kServer);
+  for (const auto& [file, text] :
+       {std::pair("server.key", renewed.key), {"server.pem", renewed.pem}})
+    std::filesystem::last_write_time(put(file, text), time);
+  EXPECT_TRUE(eventually([&] { return ask(connect(server, other_ca_)).ok(); }));
+}
+
 TEST_F(Tls, OutlivesARenewalThatGoesWrongHalfWay) {
   LoggedServer server(options(files(ca_.issue(kServer))));
   const TestCertificate renewed = other_ca_.issue(kServer);
