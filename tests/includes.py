@@ -35,7 +35,7 @@ LAYERS = {
     "checker": ["domain.*", "mesh.*", "text.*", "report.*", "geometry", "edges", "domain", "size", "mesh",
                 "check.*", "models", "lint"]}
 FACE = {f"weft/{name}.h" for name in ("c", "error", "geometry", "mesh", "pslg", "run", "size", "weft")}
-BY_MESSAGES = ("wire/chunk_view.h", "wire/marker_options.h", "wire/named_options.h")
+BY_MESSAGES = tuple(f"wire/{name}.h" for name in ("chunk_view", "domain_field", "marker_options", "named_options"))
 KNOWS_TBB = "engine/base/arena.cpp"
 TYPE = re.compile(r"^namespace ([\w:]+) \{$|^(?:class|struct|enum class|enum) (\w+)[^;(]*\{", re.MULTILINE)
 INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<(tbb/[^>]+)>)', re.MULTILINE)

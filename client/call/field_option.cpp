@@ -43,10 +43,9 @@ struct Filler {
   std::uint64_t most_raster_values;
   v1::NamedField& out;
 
-  Result<Warnings> operator()(const MarkerList& distance) const {
-    const auto markers = distance.numbers(domain.names.markers);
-    if (!markers) return tl::unexpected(markers.error());
-    out.mutable_distance()->mutable_markers()->Add(markers->begin(), markers->end());
+  Result<Warnings> operator()(const wire::DomainField& field) const {
+    if (const auto ok = wire::fill(field, domain.names.markers, out); !ok)
+      return tl::unexpected(ok.error());
     return Warnings();
   }
   Result<Warnings> operator()(const FieldOption::DistanceToFile& distance) const {
@@ -136,10 +135,6 @@ struct Filler {
       return refuse("that of the domain is " + in_quotes(domain.system->name));
     return {};
   }
-  Result<Warnings> operator()(const FieldOption::Width&) const {
-    out.mutable_width();
-    return Warnings();
-  }
 };
 
 // Whether the text could be a path only if there were such a file.
@@ -176,19 +171,13 @@ tl::expected<FieldOption, std::string> FieldOption::parse(const std::string& tex
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
     return tl::unexpected(in_quotes(text) +
                           " is not NAME=KIND, such as coast=distance or depth=FILE.tif");
-  FieldOption field{text.substr(0, equals), Width{}};
+  FieldOption field{text.substr(0, equals), wire::DomainField()};
   const std::string kind = text.substr(equals + 1);
   const std::string distance = "distance:";
-  const std::string marker = "distance:marker=";
   const std::string mesh = "mesh:";
-  if (kind == "width") return field;
-  if (kind == "distance") {
-    field.kind = MarkerList{};
-  } else if (kind.starts_with(marker)) {
-    auto markers = MarkerList::parse(kind.substr(marker.size()));
-    if (!markers)
-      return tl::unexpected(in_quotes(kind) + " does not list markers, such as marker=2,3");
-    field.kind = std::move(*markers);
+  if (auto own = wire::DomainField::parse(kind)) {
+    if (!*own) return tl::unexpected(own->error());
+    field.kind = std::move(**own);
   } else if (kind.starts_with(distance)) {
     const std::string to = kind.substr(distance.size());
     if (is_mere_word(to, folder)) {

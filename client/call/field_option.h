@@ -15,9 +15,9 @@
 #include "client/base/files.h"
 #include "files/base/error.h"
 #include "files/formats/domain.h"
-#include "files/formats/marker_list.h"
 #include "files/geo/domain_projection.h"
 #include "weft/v1/mesh_service.pb.h"
+#include "wire/domain_field.h"
 
 namespace weft::client {
 
@@ -36,9 +36,6 @@ struct FieldOption {
     std::filesystem::path file;
     std::string array;
   };
-  // The local width of the domain.
-  struct Width {};
-
   // `text` is NAME=distance, NAME=distance:marker=1,inlet, NAME=distance:FILE, NAME=width,
   // NAME=mesh:FILE[:ARRAY] or NAME=FILE[:BAND]; a relative path is below `folder`. The error is a
   // text that says what is wrong.
@@ -46,8 +43,7 @@ struct FieldOption {
                                                       const std::filesystem::path& folder);
 
   std::string name;
-  // A list of markers: the distance to segments of the domain, to all if it is empty.
-  std::variant<MarkerList, DistanceToFile, Raster, OnMesh, Width> kind;
+  std::variant<wire::DomainField, DistanceToFile, Raster, OnMesh> kind;
 };
 
 // Reads the field's file, if it has one; of a raster what covers the domain. With a projection, the

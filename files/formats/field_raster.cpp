@@ -2,6 +2,7 @@
 #include "files/formats/field_raster.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <system_error>
 #include <utility>
@@ -14,10 +15,66 @@
 namespace weft::files {
 namespace {
 
+class ToDegrees final : public PlaneToRaster {
+ public:
+  explicit ToDegrees(const std::function<Point(Point)>& each) : each_(each) {}
+
+  void transform(std::size_t n, double* x, double* y, double tolerance) const override {
+    std::vector<Point> points(n);
+    for (std::size_t i = 0; i < n; ++i) points[i] = {x[i], y[i]};
+    const auto fill = [&](std::size_t i) {
+      const Point degrees = each_(points[i]);
+      x[i] = degrees.x;
+      y[i] = degrees.y;
+    };
+    if (n > 0) fill(0);
+    for (std::size_t first = 0, last = 0; first + 1 < n; first = last) {
+      last = std::min(first + kLongest, n - 1);
+      fill(last);
+      fill_between(first, last, tolerance, points, fill, x, y);
+    }
+  }
+
+ private:
+  static constexpr std::size_t kLongest = 64;
+
+  // Those between two that are filled: on a straight line if the one in the middle is.
+  template <class Fill>
+  static void fill_between(std::size_t first, std::size_t last, double tolerance,
+                           const std::vector<Point>& points, const Fill& fill, double* x,
+                           double* y) {
+    if (last - first < 2) return;
+    const std::size_t middle = (first + last) / 2;
+    const auto on_line = [&](std::size_t i) -> Point {
+      const double t =
+          std::hypot(points[i].x - points[first].x, points[i].y - points[first].y) /
+          std::hypot(points[last].x - points[first].x, points[last].y - points[first].y);
+      return {x[first] + t * (x[last] - x[first]), y[first] + t * (y[last] - y[first])};
+    };
+    fill(middle);
+    const Point straight = on_line(middle);
+    if (!(std::hypot(straight.x - x[middle], straight.y - y[middle]) < tolerance)) {
+      fill_between(first, middle, tolerance, points, fill, x, y);
+      fill_between(middle, last, tolerance, points, fill, x, y);
+      return;
+    }
+    for (std::size_t i = first + 1; i < last; ++i) {
+      const Point at = on_line(i);
+      x[i] = at.x;
+      y[i] = at.y;
+    }
+  }
+
+  const std::function<Point(Point)>& each_;
+};
+
 // An ESRI ASCII grid, as raster.h reads it.
 class AsciiSource final : public RasterSource {
  public:
-  AsciiSource(const std::filesystem::path& path, Raster raster) : raster_(std::move(raster)) {
+  // `to_degrees` outlives it, and is called from one thread at a time.
+  AsciiSource(const std::filesystem::path& path, Raster raster,
+              const std::function<Point(Point)>* to_degrees = nullptr)
+      : raster_(std::move(raster)), to_degrees_(to_degrees) {
     shape_.name = path.string();
     shape_.grids.push_back(
         {raster_.x, raster_.y, raster_.dx, raster_.dy, raster_.columns, raster_.rows});
@@ -35,11 +92,14 @@ class AsciiSource final : public RasterSource {
   bool is_in(const CoordinateSystem&) const override { return true; }
 
   Result<std::unique_ptr<PlaneToRaster>> from_plane(const std::string&) override {
-    return fail(ExitCode::kInternal, shape_.name + ": was not opened with GDAL");
+    if (to_degrees_ == nullptr)
+      return fail(ExitCode::kInternal, shape_.name + ": was not opened with GDAL");
+    return std::make_unique<ToDegrees>(*to_degrees_);
   }
 
  private:
   Raster raster_;
+  const std::function<Point(Point)>* to_degrees_;
 };
 
 Result<std::unique_ptr<RasterSource>> open_ascii(const std::filesystem::path& path,
@@ -89,6 +149,16 @@ Result<FieldRaster> read_field_raster_projected(const std::filesystem::path& pat
   const auto source = open_with_gdal(path, band);
   if (!source) return tl::unexpected(source.error());
   return read_projected_window(**source, box, crs, max_values);
+}
+
+Result<FieldRaster> read_ascii_field(const std::filesystem::path& path, const RasterBox& box,
+                                     const std::function<Point(Point)>& to_degrees,
+                                     std::uint64_t max_values) {
+  auto raster = read_raster(path, RasterValues::kAny);
+  if (!raster) return tl::unexpected(raster.error());
+  AsciiSource source(path, std::move(*raster), &to_degrees);
+  return to_degrees ? read_projected_window(source, box, "", max_values)
+                    : read_window(source, box, max_values);
 }
 
 RasterPath split_raster_path(std::string_view text) {

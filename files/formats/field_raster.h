@@ -19,6 +19,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -81,6 +82,13 @@ Result<FieldRaster> read_field_raster_projected(const std::filesystem::path& pat
                                                 const std::string& band, const RasterBox& box,
                                                 const std::string& crs,
                                                 std::uint64_t max_values = kMaxFieldValues);
+
+// The same of an ESRI ASCII grid, whatever its file is called, and without GDAL: of a box in the
+// plane of the grid, or, if there is a `to_degrees`, of one in the plane from which that leads to
+// longitudes and latitudes, which those of the grid are then. What it gives may be NaN.
+Result<FieldRaster> read_ascii_field(const std::filesystem::path& path, const RasterBox& box,
+                                     const std::function<Point(Point)>& to_degrees,
+                                     std::uint64_t max_values = kMaxFieldValues);
 
 // Succeeds if there is such a file, or the path is one inside an archive, "/vsi..."; GDAL takes
 // other words for the addresses of servers and data bases. Errors as above.

@@ -4,9 +4,12 @@
 #include <google/protobuf/io/coded_stream.h>
 
 #include <algorithm>
+#include <functional>
+#include <optional>
 #include <utility>
 
 #include "files/formats/domain_formats.h"
+#include "files/formats/field_raster.h"
 #include "files/lint/lint_json.h"
 #include "files/message/domain_message.h"
 
@@ -15,26 +18,41 @@ namespace {
 
 // In degrees and in metres.
 constexpr std::uint64_t kBytesOfProjectedPoint = 2 * sizeof(files::Point);
+// A value takes two bytes of a file at least, and is there as a double, and twice as a float.
+constexpr std::uint64_t kBytesPerGridByte = 12;
 
-// A file that is open as long as this is, and what it holds.
+// A file that is open as long as this is.
 struct Opened {
+  files::FileDescriptor file;
+  std::filesystem::path path;
+  FileTexts texts;
+};
+
+Outcome<Opened> open_file(std::string bytes, const std::string& name,
+                          const std::filesystem::path& folder) {
+  auto nameless = files::open_unlinked(folder);
+  if (!nameless || !files::write_all(nameless->get(), bytes.data(), bytes.size()))
+    return tl::unexpected(Problem{
+        .status = 507, .reason = "STORE_FULL", .detail = "the server has no room for the file"});
+  Opened opened{.file = std::move(*nameless)};
+  opened.path = "/proc/self/fd/" + std::to_string(opened.file.get());
+  opened.texts = FileTexts(opened.path.string(), name);
+  return opened;
+}
+
+struct OpenedDomain {
   files::FileDescriptor file;
   files::DataPath path;
   FileTexts texts;
-  files::Domain domain;
+  files::Domain domain{};
 };
 
-Outcome<Opened> open_domain(DomainFile file, const MeshWish& wish,
-                            const std::filesystem::path& folder) {
-  auto nameless = files::open_unlinked(folder);
-  if (!nameless || !files::write_all(nameless->get(), file.bytes.data(), file.bytes.size()))
-    return tl::unexpected(Problem{
-        .status = 507, .reason = "STORE_FULL", .detail = "the server has no room for the file"});
-  file.bytes = {};
-  Opened opened{.file = std::move(*nameless)};
-  opened.path = std::filesystem::path("/proc/self/fd/" + std::to_string(opened.file.get()));
+Outcome<OpenedDomain> open_domain(DomainFile& file, const MeshWish& wish,
+                                  const std::filesystem::path& folder) {
+  auto found = open_file(std::exchange(file.bytes, {}), file.name, folder);
+  if (!found) return tl::unexpected(found.error());
+  OpenedDomain opened{std::move(found->file), std::move(found->path), std::move(found->texts)};
   opened.path.format = file.extension;
-  opened.texts = FileTexts(opened.path.string(), file.name);
   auto domain = files::read_own_domain(
       opened.path,
       {.lonlat = wish.projection.wanted(), .even_odd = wish.fill == files::PolygonFill::kEvenOdd});
@@ -44,6 +62,46 @@ Outcome<Opened> open_domain(DomainFile file, const MeshWish& wish,
         .status = 400, .reason = "BAD_OPTION", .detail = named.error().message, .field = "names"});
   opened.domain = std::move(*domain);
   return opened;
+}
+
+files::RasterBox box_of(const files::Domain& domain) {
+  files::RasterBox box;
+  for (const files::Point& p : domain.points) {
+    if (&p == domain.points.data()) box = {p.x, p.y, p.x, p.y};
+    box = {std::min(box.min_x, p.x), std::min(box.min_y, p.y), std::max(box.max_x, p.x),
+           std::max(box.max_y, p.y)};
+  }
+  return box;
+}
+
+// Adds the fields to the size, and what there is to say of them to the warnings. The grids of a
+// domain in longitude and latitude are so, too.
+std::optional<Problem> add_fields(std::vector<FieldFile> fields, const files::Domain& domain,
+                                  const files::DomainProjection* projection,
+                                  const std::filesystem::path& folder, v1::SizeField& size,
+                                  std::vector<std::string>& warnings) {
+  std::function<files::Point(files::Point)> to_degrees;
+  if (projection != nullptr)
+    to_degrees = [projection](files::Point p) { return projection->to_lonlat(p); };
+  const std::uint64_t most = files::kMaxFieldValues / std::max<std::size_t>(1, fields.size());
+  for (FieldFile& field : fields) {
+    const auto opened = open_file(std::move(field.bytes), field.name, folder);
+    if (!opened) return opened.error();
+    auto read = files::read_ascii_field(opened->path, box_of(domain), to_degrees, most);
+    if (!read) return opened->texts.problem(read.error());
+    v1::NamedField& named = *size.add_fields();
+    named.set_name(field.field);
+    v1::FieldRaster& raster = *named.mutable_raster();
+    raster.set_x(read->x);
+    raster.set_y(read->y);
+    raster.set_dx(read->dx);
+    raster.set_dy(read->dy);
+    raster.set_columns(read->columns);
+    raster.set_rows(read->rows);
+    raster.mutable_values()->Add(read->values.begin(), read->values.end());
+    for (const std::string& warning : read->warnings) warnings.push_back(opened->texts(warning));
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -86,7 +144,7 @@ std::string with_part(unsigned field, const std::string& message, const std::str
 
 Outcome<SentDomain> read_domain_file(DomainFile file, MeshWish wish,
                                      const std::filesystem::path& folder) {
-  auto opened = open_domain(std::move(file), wish, folder);
+  auto opened = open_domain(file, wish, folder);
   if (!opened) return tl::unexpected(opened.error());
   files::Domain& domain = opened->domain;
   const FileTexts& texts = opened->texts;
@@ -108,6 +166,10 @@ Outcome<SentDomain> read_domain_file(DomainFile file, MeshWish wish,
   if (sent.projection != nullptr)
     for (const std::string& warning : sent.projection->warnings())
       sent.warnings.push_back(texts(warning));
+  if (!file.fields.empty())
+    if (auto problem = add_fields(std::move(file.fields), domain, sent.projection.get(), folder,
+                                  *wish.request.mutable_size(), sent.warnings))
+      return tl::unexpected(*problem);
   const std::string part =
       files::domain_message(domain) + wish.request.domain().SerializeAsString();  // its `snap`
   wish.request.clear_domain();
@@ -129,7 +191,7 @@ Outcome<SentDomain> read_domain_file(DomainFile file, MeshWish wish,
 
 Outcome<std::string> lint_domain_file(DomainFile file, MeshWish wish,
                                       const std::filesystem::path& folder) {
-  auto opened = open_domain(std::move(file), wish, folder);
+  auto opened = open_domain(file, wish, folder);
   if (!opened) return tl::unexpected(opened.error());
   files::Domain& domain = opened->domain;
   if (!wish.projection.wanted())
@@ -151,11 +213,14 @@ Outcome<std::string> lint_domain_file(DomainFile file, MeshWish wish,
 // times.
 std::uint64_t bytes_to_read(const DomainFile& file) {
   const std::uint64_t size = file.bytes.size();
+  std::uint64_t grids = 0;
+  for (const FieldFile& field : file.fields) grids += kBytesPerGridByte * field.bytes.size();
   const auto chords = [size](std::uint64_t most) { return std::min(1500 * size, most << 20); };
   if (file.extension == ".geojson" || file.extension == ".json" || file.extension == ".poly")
-    return 40 * size;
-  if (file.extension == ".dxf") return (std::uint64_t{128} << 20) + 512 * size + chords(256);
-  return 48 * size + chords(128);
+    return grids + 40 * size;
+  if (file.extension == ".dxf")
+    return grids + (std::uint64_t{128} << 20) + 512 * size + chords(256);
+  return grids + 48 * size + chords(128);
 }
 
 // Arcs are judged by chords, all at once.

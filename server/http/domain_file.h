@@ -29,10 +29,18 @@ class FileTexts {
   std::string name_;
 };
 
+// A grid of values (.asc) that is a field of the size.
+struct FieldFile {
+  std::string field;
+  std::string name;  // of the file, as texts call it
+  std::string bytes;
+};
+
 struct DomainFile {
   std::string bytes;
   std::string name;       // as texts call it, such as "coast.geojson"
   std::string extension;  // that says how it is read
+  std::vector<FieldFile> fields{};
 };
 
 // What is left of a domain once it has been sent: its names, its places, and how to bring the mesh

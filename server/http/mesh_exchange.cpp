@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "files/base/text.h"
+#include "files/formats/names.h"
+#include "server/http/form.h"
 #include "server/http/formats.h"
 
 namespace weft::server {
@@ -88,6 +90,35 @@ files::Names names_of(const v1::Domain& domain) {
   return names.take();
 }
 
+// The wish, whose mesh can be written.
+Outcome<MeshWish> read_wish(const Query& query, ParameterUses uses, MeshExchange::Purpose purpose,
+                            std::string_view accept) {
+  using Purpose = MeshExchange::Purpose;
+  auto wish = server::read_wish(query, uses);
+  if (!wish) return wish;
+  const auto refuse = [](const std::string& detail, const char* field) {
+    return tl::unexpected(
+        Problem{.status = 400, .reason = "BAD_OPTION", .detail = detail, .field = field});
+  };
+  if (purpose == Purpose::kMesh || purpose == Purpose::kStored) {
+    if (wish->to.empty()) wish->to = format_wanted(accept);
+    if (wish->to.empty())
+      return tl::unexpected(Problem{
+          .status = 406,
+          .reason = "UNKNOWN_FORMAT",
+          .detail = "nothing of Accept is a format of meshes; the parameter `format` names one: " +
+                    fmt::format("{}", fmt::join(written_formats(), ", "))});
+    const files::DataPath mesh = std::filesystem::path("mesh" + wish->to);
+    if (const auto writable = files::check_writable(mesh, wish->writing); !writable)
+      return refuse(writable.error().message, "order");
+  }
+  if (purpose == Purpose::kJob && wish->projection.wanted() && !wish->projection.to_metres)
+    return refuse(
+        "a job is kept without its projection, so its mesh is in metres: give to_metres, too",
+        "lonlat");
+  return wish;
+}
+
 grpc::ByteBuffer buffer_of(std::string bytes) {
   auto* const owned = new std::string(std::move(bytes));
   const grpc::Slice slice(
@@ -98,56 +129,37 @@ grpc::ByteBuffer buffer_of(std::string bytes) {
 
 }  // namespace
 
-MeshExchange::MeshExchange(ExchangeParts& parts, Purpose purpose, MeshWish wish, Query query,
-                           Visit& visit, std::unique_ptr<Meshes::Place> place)
+MeshExchange::MeshExchange(ExchangeParts& parts, Purpose purpose, ParameterUses uses, MeshWish wish,
+                           Query query, Visit& visit, std::unique_ptr<Meshes::Place> place)
     : parts_(parts),
       purpose_(purpose),
+      uses_(uses),
       wish_(std::move(wish)),
       query_(std::move(query)),
       client_(visit.client),
       metadata_(std::move(visit.metadata)),
       place_(std::move(place)),
       answers_to_(std::move(visit.answers_to)),
+      accept_(view(visit.headers[http::field::accept])),
       content_type_(view(visit.headers[http::field::content_type])),
       held_(parts.context.budget) {}
 
 Outcome<std::shared_ptr<MeshExchange>> MeshExchange::open(ExchangeParts& parts, Purpose purpose,
                                                           ParameterUses uses, const Query& query,
                                                           const std::string& word, Visit& visit) {
-  const auto refuse = [](unsigned status, const char* reason, std::string detail,
-                         std::string field = "") {
-    return tl::unexpected(Problem{.status = status,
-                                  .reason = reason,
-                                  .detail = std::move(detail),
-                                  .field = std::move(field),
-                                  .retry = status == 429});
-  };
-  auto wish = read_wish(query, uses);
+  auto wish = read_wish(query, uses, purpose, view(visit.headers[http::field::accept]));
   if (!wish) return tl::unexpected(wish.error());
-  if (purpose == Purpose::kMesh || purpose == Purpose::kStored) {
-    const std::string_view accept = view(visit.headers[http::field::accept]);
-    if (wish->to.empty()) wish->to = format_wanted(accept);
-    if (wish->to.empty())
-      return refuse(406, "UNKNOWN_FORMAT",
-                    "nothing of Accept is a format of meshes; the parameter `format` names one: " +
-                        fmt::format("{}", fmt::join(written_formats(), ", ")));
-    const files::DataPath mesh = std::filesystem::path("mesh" + wish->to);
-    if (const auto writable = files::check_writable(mesh, wish->writing); !writable)
-      return refuse(400, "BAD_OPTION", writable.error().message, "order");
-  }
-  if (purpose == Purpose::kJob && wish->projection.wanted() && !wish->projection.to_metres)
-    return refuse(400, "BAD_OPTION",
-                  "a job is kept without its projection, so its mesh is in metres: give to_metres, "
-                  "too",
-                  "lonlat");
   const std::string_view told = view(visit.headers[http::field::content_length]);
   std::uint64_t length = 0;
   std::from_chars(told.data(), told.data() + told.size(), length);
   auto place = parts.meshes.enter(visit.client);
   if (place == nullptr)
-    return refuse(429, "QUEUE_FULL", "too many meshes are on their way over HTTP");
+    return tl::unexpected(Problem{.status = 429,
+                                  .reason = "QUEUE_FULL",
+                                  .detail = "too many meshes are on their way over HTTP",
+                                  .retry = true});
   std::shared_ptr<MeshExchange> exchange(
-      new MeshExchange(parts, purpose, std::move(*wish), query, visit, std::move(place)));
+      new MeshExchange(parts, purpose, uses, std::move(*wish), query, visit, std::move(place)));
   (purpose == Purpose::kStored ? exchange->job_ : exchange->file_.name) =
       purpose == Purpose::kStored ? word : harmless_name(word);
   if (length > parts.context.most_request_bytes) return tl::unexpected(exchange->too_large());
@@ -196,8 +208,41 @@ void MeshExchange::body_late() {
           .detail = "the file did not arrive within --request-timeout"});
 }
 
+std::optional<Problem> MeshExchange::take_form() {
+  const auto malformed = [](const std::string& why) {
+    return Problem{.status = 400, .reason = "MALFORMED_REQUEST", .detail = why};
+  };
+  const std::string form = std::exchange(file_.bytes, {});
+  const std::string content_type = std::exchange(content_type_, {});
+  if (!held_.hold(held_.bytes() + form.size())) return out_of_memory();
+  const auto parts = parts_of(content_type, form);
+  if (!parts) return malformed(parts.error());
+  bool has_domain = false;
+  for (const FormPart& part : *parts) {
+    if (!files::is_plain_text(part.name) || (!part.filename && !files::is_plain_text(part.body)))
+      return malformed("a part of the form is neither a file nor UTF-8 without control characters");
+    if (!part.filename) {
+      query_.emplace_back(part.name, part.body);
+    } else if (part.name != "domain") {
+      file_.fields.push_back({part.name, harmless_name(*part.filename), std::string(part.body)});
+    } else {
+      if (std::exchange(has_domain, true)) return malformed("the form has two domains");
+      file_.name = harmless_name(*part.filename);
+      content_type_ = part.content_type;
+      file_.bytes = part.body;
+    }
+  }
+  if (!has_domain) return malformed("the form has no file whose name is `domain`");
+  auto wish = read_wish(query_, uses_, purpose_, accept_);
+  if (!wish) return wish.error();
+  wish_ = std::move(*wish);
+  return std::nullopt;
+}
+
 void MeshExchange::body_ended() {
   if (purpose_ == Purpose::kStored) return begin_fetch();
+  if (is_form(content_type_))
+    if (const auto problem = take_form()) return refuse(*problem);
   file_.extension =
       wish_.from.empty() ? format_read(file_.name, content_type_, file_.bytes) : wish_.from;
   if (file_.extension.empty())

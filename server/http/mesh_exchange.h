@@ -48,11 +48,13 @@ class MeshExchange final : public Exchange,
   void drop() override;
 
  private:
-  MeshExchange(ExchangeParts& parts, Purpose purpose, MeshWish wish, Query query, Visit& visit,
-               std::unique_ptr<Meshes::Place> place);
+  MeshExchange(ExchangeParts& parts, Purpose purpose, ParameterUses uses, MeshWish wish,
+               Query query, Visit& visit, std::unique_ptr<Meshes::Place> place);
 
   template <class Task, class Then>
   void work(bool is_long, Task task, Then then);
+  // Takes the files and the parameters of a form, as which the body came; returns what is wrong.
+  std::optional<Problem> take_form();
   // Whether work on the whole mesh takes long.
   bool is_large() const;
   void lint(std::shared_ptr<void> memory);
@@ -71,12 +73,14 @@ class MeshExchange final : public Exchange,
 
   ExchangeParts& parts_;
   const Purpose purpose_;
+  const ParameterUses uses_;
   MeshWish wish_;
-  const Query query_;
+  Query query_;
   const std::string client_;
   const Metadata metadata_;
   const std::unique_ptr<Meshes::Place> place_;
   std::shared_ptr<Client> answers_to_;  // null once it has its answer, or is gone
+  const std::string accept_;
   std::string content_type_;
   std::string job_;            // whose mesh it is
   std::string stem_ = "mesh";  // of the name of the file that is sent

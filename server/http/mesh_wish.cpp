@@ -47,6 +47,17 @@ std::string read_size(const std::string& text, v1::Measure measure, MeshWish& wi
   return "";
 }
 
+std::string read_field(const std::string& text, MeshWish& wish) {
+  const auto equals = std::min(text.find('='), text.size());
+  auto field = wire::DomainField::parse(text.substr(std::min(equals + 1, text.size())));
+  if (equals == 0 || !field)
+    return in_quotes(text) +
+           " is not NAME=KIND, whose kinds are distance, distance:marker=M,M and width";
+  if (!*field) return field->error();
+  wish.fields.push_back({text.substr(0, equals), std::move(**field)});
+  return "";
+}
+
 template <class T>
 std::function<std::string(const std::string&, MeshWish&)> one_of(
     T MeshWish::*member, std::vector<std::pair<std::string, T>> values) {
@@ -98,6 +109,17 @@ std::vector<Parameter> own_parameters() {
        [](const std::string& text, MeshWish& wish) {
          return read_size(text, v1::MEASURE_AREA, wish);
        }},
+      {"field",
+       Type::kText,
+       "A field that size or edge may name: coast=distance, to all segments, "
+       "inlet=distance:marker=2,inlet, to those with a marker, or w=width, the domain's local "
+       "width. In a form, each file but that of the domain is a field, too, of the values of an "
+       ".asc grid",
+       {},
+       true,
+       Use::kDomain,
+       "size.fields",
+       read_field},
       {"names",
        Type::kText,
        "Name of a marker or a region: marker=2:inlet or region=1:fluid",
@@ -345,6 +367,12 @@ std::optional<Problem> complete(const files::NameTable& markers, MeshWish& wish)
     for (const wire::MarkerOption& option : wire::marker_options())
       if (files::is_within(fault->field, option.path))
         return bad_parameter(with_underscores(option.name), fault->error.message);
+  for (const NamedDomainField& given : wish.fields) {
+    v1::NamedField& field = *wish.request.mutable_size()->add_fields();
+    field.set_name(given.name);
+    if (const auto ok = wire::fill(given.field, markers, field); !ok)
+      return bad_parameter("field", ok.error().message);
+  }
   if (const auto found = find_open_boundaries(wish.writing, markers); !found)
     return bad_parameter("open_boundary", found.error().message);
   return std::nullopt;

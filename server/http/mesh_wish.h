@@ -19,9 +19,16 @@
 #include "files/geo/projection_options.h"
 #include "server/console/problem.h"
 #include "weft/v1/mesh_service.pb.h"
+#include "wire/domain_field.h"
 #include "wire/marker_options.h"
 
 namespace weft::server {
+
+// A field of the size, of the domain itself.
+struct NamedDomainField {
+  std::string name;
+  wire::DomainField field;
+};
 
 struct MeshWish {
   v1::GenerateMeshRequest request{};  // all but the domain, once it is complete
@@ -33,6 +40,7 @@ struct MeshWish {
   files::ProjectionOptions projection{};
   files::MeshWriteOptions writing{};
   wire::MarkerOptions markers{};
+  std::vector<NamedDomainField> fields{};
   std::vector<files::NameOption> names{};
 };
 

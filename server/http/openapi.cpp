@@ -50,12 +50,23 @@ Json file_json() {
   return {{"application/octet-stream", {{"schema", {{"type", "string"}, {"format", "binary"}}}}}};
 }
 
+// The file of a domain, or a form that has others besides.
+Json domain_json() {
+  const Json file{{"type", "string"}, {"format", "binary"}};
+  Json content = file_json();
+  content["multipart/form-data"]["schema"] = {{"type", "object"},
+                                              {"properties", {{"domain", file}}},
+                                              {"required", {"domain"}},
+                                              {"additionalProperties", file}};
+  return content;
+}
+
 Json operation(const RouteText& route) {
   Json made{{"summary", route.about}, {"parameters", path_parameters(route.path)}};
   for (const Parameter* const parameter : parameters_for(route.uses))
     made["parameters"].push_back(parameter_json(*parameter));
   if ((route.uses & static_cast<ParameterUses>(ParameterUse::kDomain)) != 0)
-    made["requestBody"] = {{"required", true}, {"content", file_json()}};
+    made["requestBody"] = {{"required", true}, {"content", domain_json()}};
   const Json ok = route.is_mesh ? file_json() : Json{{"application/json", Json::object()}};
   const Json problem{
       {"application/problem+json", {{"schema", {{"$ref", "#/components/schemas/Problem"}}}}}};

@@ -85,6 +85,43 @@ def test_a_bad_file_is_told_with_its_place(tmp_path):
         assert problem["errors"][0]["line"] == 2
 
 
+def grid(x: float, y: float, cell: float, rows: list[list[float]]) -> str:
+    return (f"ncols {len(rows[0])}\nnrows {len(rows)}\nxllcenter {x}\nyllcenter {y}\ncellsize {cell}\n"
+            + "".join(" ".join(map(str, row)) + "\n" for row in rows))
+
+
+def test_a_form_brings_the_fields_of_a_size(tmp_path):
+    (tmp_path / "h.asc").write_text(grid(-10, -10, 60, [[1, 2, 4], [4, 8, 1], [2, 1, 3]]))
+    edge = ["--edge", "min(h, 0.5 + 0.1*rim)", "--field", "h=h.asc", "--field", "rim=distance"]
+    with Server(tmp_path) as server:
+        url = f"http://{server.http}/v1/mesh"
+        form = ["-F", f"domain=@{KEY}", "-F", "edge=min(h, 0.5 + 0.1*rim)", "-F", "field=rim=distance", "-F",
+                "h=@h.asc"]
+        status, body = curl(tmp_path, *form, url, "-o", "form.vtu")
+        assert status == 200, body
+        subprocess.run([WEFT, "mesh", "--server", server.grpc, KEY, *edge, "-o", "flags.vtu", "-q"], cwd=tmp_path,
+                       check=True)
+        assert (tmp_path / "form.vtu").read_bytes() == (tmp_path / "flags.vtu").read_bytes()
+        for line, words in ((form[2:], "no file whose name is `domain`"),
+                            ([*form, "-F", "edges=2"], "there is no such parameter"),
+                            ([*form[:-1], f"h=@{KEY}"], "key.poly:"),
+                            ([*form, "-F", "k=@h.asc", "-F", "k=@h.asc"], "k")):
+            status, body = curl(tmp_path, *line, url)
+            assert status == 400 and words in json.loads(body)["detail"], body
+
+
+def test_grids_of_a_domain_in_degrees_are_in_degrees(tmp_path):
+    rows = [[8000 + 500 * (i + j) for i in range(40)] for j in range(40)]
+    (tmp_path / "h.asc").write_text(grid(-90, 20, 1, rows))
+    with Server(tmp_path) as server:
+        status, body = curl(tmp_path, "-F", f"domain=@{COAST}", "-F", "to_metres=", "-F", "edge=h", "-F", "h=@h.asc",
+                            f"http://{server.http}/v1/mesh?format=vtu", "-o", "coast.vtu")
+    assert status == 200, body
+    checked = subprocess.run([WEFT, "check", "coast.vtu", "--domain", COAST, "--to-metres", "--edge", "h*1.0001",
+                              "--field", "h=h.asc"], cwd=tmp_path, capture_output=True, text=True)
+    assert checked.returncode == 0, checked.stdout + checked.stderr
+
+
 def test_tokens_and_certificates_are_those_of_grpc(tmp_path):
     (tmp_path / "tokens").write_text("ann 0123456789abcdef\n")
     (tmp_path / "tokens").chmod(0o600)

@@ -5,11 +5,13 @@
 //   wish       parameters are taken, or refused with a sentence and a status of 400, 406 or 415
 //   request    what is taken can be sent, and read again
 //   format     the format of the file is one that is read here, or none
+//   form       the file, as a form, has parts with names within it, or is refused with a sentence
 #include <algorithm>
 #include <cstdint>
 #include <string>
 #include <string_view>
 
+#include "server/http/form.h"
 #include "server/http/formats.h"
 #include "server/http/mesh_wish.h"
 #include "server/http/target.h"
@@ -35,6 +37,11 @@ void judge(const std::uint8_t* data, std::size_t size) {
   const auto read = read_formats();
   must(format.empty() || std::ranges::find(read, format.substr(1)) != read.end(), "format", format);
   (void)format_wanted(text);
+  const auto parts = parts_of("multipart/form-data; boundary=x", file);
+  if (!parts) must(!parts.error().empty(), "form", "no sentence");
+  if (parts)
+    for (const FormPart& part : *parts)
+      must(!part.name.empty() && part.body.size() < file.size(), "form", part.name);
   if (!target) return;
   auto wish = read_wish(target->query, ~ParameterUses{});
   if (!wish) {

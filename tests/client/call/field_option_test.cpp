@@ -28,15 +28,16 @@ std::string fault(const std::string& text) {
 
 TEST(FieldOption, NamesAKind) {
   EXPECT_EQ(parsed("coast=distance").name, "coast");
-  EXPECT_TRUE(std::get<MarkerList>(parsed("coast=distance").kind).markers.empty());
-  const auto named = std::get<MarkerList>(parsed("c=distance:marker=inlet,4,wall").kind);
+  EXPECT_TRUE(std::get<wire::DomainField>(parsed("coast=distance").kind).distance->markers.empty());
+  const auto named =
+      *std::get<wire::DomainField>(parsed("c=distance:marker=inlet,4,wall").kind).distance;
   EXPECT_THAT(named.markers, ElementsAre(4));
   EXPECT_THAT(named.names, ElementsAre("inlet", "wall"));
-  EXPECT_THAT(std::get<MarkerList>(parsed("c=distance:marker=2,-3").kind).markers,
+  EXPECT_THAT(std::get<wire::DomainField>(parsed("c=distance:marker=2,-3").kind).distance->markers,
               ElementsAre(2, -3));
   EXPECT_EQ(std::get<FieldOption::DistanceToFile>(parsed("c=distance:a/b.geojson").kind).file,
             "folder/a/b.geojson");
-  EXPECT_TRUE(std::holds_alternative<FieldOption::Width>(parsed("w=width").kind));
+  EXPECT_FALSE(std::get<wire::DomainField>(parsed("w=width").kind).distance);
 }
 
 TEST(FieldOption, IsARasterWithOrWithoutABand) {
