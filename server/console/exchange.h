@@ -22,9 +22,10 @@
 namespace weft::server {
 
 struct Answer {
-  Response head;                 // with its body, unless that is a file
-  files::FileDescriptor file{};  // read from its beginning
-  std::uint64_t file_bytes = 0;
+  Response head;  // with its body, unless that is a file
+  files::FileDescriptor file{};
+  std::uint64_t file_bytes = 0;  // that are sent of it
+  std::uint64_t file_first = 0;  // the first of these
 };
 
 class Exchange {

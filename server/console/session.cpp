@@ -397,7 +397,7 @@ void HttpSession::answer(Answer answer) {
   answer.head.content_length(answer.file_bytes);
   file_ = std::move(answer.file);
   file_bytes_ = answer.file_bytes;
-  file_at_ = 0;
+  file_at_ = static_cast<off_t>(answer.file_first);
   window_.resize(kWindow);
   std::ostringstream text;
   text << answer.head.base();

@@ -10,8 +10,11 @@
 
 #include "files/base/text.h"
 #include "files/formats/names.h"
+#include "server/http/byte_range.h"
 #include "server/http/form.h"
 #include "server/http/formats.h"
+#include "server/version.h"
+#include "server/wire/request_key.h"
 
 namespace weft::server {
 namespace {
@@ -141,6 +144,8 @@ MeshExchange::MeshExchange(ExchangeParts& parts, Purpose purpose, ParameterUses 
       place_(std::move(place)),
       answers_to_(std::move(visit.answers_to)),
       accept_(view(visit.headers[http::field::accept])),
+      range_(view(visit.headers[http::field::range])),
+      if_range_(view(visit.headers[http::field::if_range])),
       content_type_(view(visit.headers[http::field::content_type])),
       held_(parts.context.budget) {}
 
@@ -404,6 +409,29 @@ void MeshExchange::write_file() {
       [](MeshExchange& self, MeshFile file) { self.answer(std::move(file)); });
 }
 
+void MeshExchange::cut(Answer& answer) const {
+  // A file is made anew for each request, of the same mesh in the same way.
+  std::string made_of = summary_->sha256() + std::string(kVersion) + wish_.to;
+  for (const auto& [name, text] : query_) made_of += '&' + name + '=' + text;
+  const std::string tag = '"' + hexadecimal(sha256(made_of)) + '"';
+  answer.head.set(http::field::accept_ranges, "bytes");
+  answer.head.set(http::field::etag, tag);
+  if (range_.empty() || (!if_range_.empty() && if_range_ != tag)) return;
+  const std::uint64_t size = answer.file_bytes;
+  const auto range = range_of(range_, size);
+  if (!range) {
+    answer.file.reset();
+    answer.head.result(http::status::range_not_satisfiable);
+    answer.head.set(http::field::content_range, fmt::format("bytes */{}", size));
+  } else if (range->bytes < size) {
+    answer.file_first = range->first;
+    answer.file_bytes = range->bytes;
+    answer.head.result(http::status::partial_content);
+    answer.head.set(http::field::content_range, fmt::format("bytes {}-{}/{}", range->first,
+                                                            range->first + range->bytes - 1, size));
+  }
+}
+
 void MeshExchange::answer(MeshFile file) {
   Answer answer{.head = make_page(http::status::ok, media_type(wish_.to), ""),
                 .file = std::move(file.file),
@@ -419,6 +447,7 @@ void MeshExchange::answer(MeshFile file) {
   warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
   add_warnings(*summary_, *sent_, wish_.request.budget().max_triangles(), warnings);
   warn(std::move(warnings), head);
+  if (purpose_ == Purpose::kStored) cut(answer);
   if (const auto client = std::exchange(answers_to_, nullptr)) client->answer(std::move(answer));
 }
 

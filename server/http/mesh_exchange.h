@@ -67,6 +67,8 @@ class MeshExchange final : public Exchange,
   void ended(const grpc::Status& status, const Metadata& trailers) override;
   void write_file();
   void answer(MeshFile file);
+  // Names the file of a stored mesh, and leaves of it the range that was asked for.
+  void cut(Answer& answer) const;
   // Ends the call, if there is one.
   void refuse(const Problem& problem);
   Problem too_large() const;
@@ -81,6 +83,7 @@ class MeshExchange final : public Exchange,
   const std::unique_ptr<Meshes::Place> place_;
   std::shared_ptr<Client> answers_to_;  // null once it has its answer, or is gone
   const std::string accept_;
+  const std::string range_, if_range_;  // of a stored mesh
   std::string content_type_;
   std::string job_;            // whose mesh it is
   std::string stem_ = "mesh";  // of the name of the file that is sent

@@ -136,6 +136,25 @@ def test_tokens_and_certificates_are_those_of_grpc(tmp_path):
         assert "client=ann" in server.text()
 
 
+def test_the_download_of_a_stored_mesh_goes_on_where_it_ended(tmp_path):
+    with Server(tmp_path, "--data", str(tmp_path / "jobs")) as server:
+        url = f"http://{server.http}/v1/jobs"
+        job = json.loads(curl(tmp_path, "--data-binary", f"@{KEY}", url + "?size=0.1")[1])["job"]["id"]
+        mesh = f"{url}/{job}/mesh?format=msh"
+        while json.loads(curl(tmp_path, f"{url}/{job}")[1])["job"]["state"] != "JOB_STATE_SUCCEEDED":
+            time.sleep(0.01)
+        assert curl(tmp_path, mesh, "-o", "whole.msh", "-D", "head")[0] == 200
+        tag = next(line.split()[1] for line in (tmp_path / "head").read_text().splitlines() if line.startswith("ETag"))
+        whole = (tmp_path / "whole.msh").read_bytes()
+        (tmp_path / "part.msh").write_bytes(whole[:5000])
+        assert curl(tmp_path, "-C", "-", mesh, "-o", "part.msh", "-H", f"If-Range: {tag}")[0] == 206
+        assert (tmp_path / "part.msh").read_bytes() == whole
+        assert curl(tmp_path, mesh, "-H", "Range: bytes=-9", "-o", "end")[0] == 206
+        assert (tmp_path / "end").read_bytes() == whole[-9:]
+        assert curl(tmp_path, mesh, "-H", "Range: bytes=9-", "-H", 'If-Range: "another"', "-o", "all")[0] == 200
+        assert curl(tmp_path, mesh, "-H", f"Range: bytes={len(whole)}-")[0] == 416
+
+
 def test_what_is_too_large_is_refused(tmp_path):
     with Server(tmp_path, "--max-request-bytes", "1MiB") as server:
         (tmp_path / "large.csv").write_text("0,0\n" * (1 << 19))
