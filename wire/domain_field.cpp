@@ -19,6 +19,17 @@ std::optional<tl::expected<DomainField, std::string>> DomainField::parse(const s
   return DomainField{std::move(*markers)};
 }
 
+void fill(const files::FieldRaster& raster, v1::NamedField& out) {
+  v1::FieldRaster& to = *out.mutable_raster();
+  to.set_x(raster.x);
+  to.set_y(raster.y);
+  to.set_dx(raster.dx);
+  to.set_dy(raster.dy);
+  to.set_columns(raster.columns);
+  to.set_rows(raster.rows);
+  to.mutable_values()->Add(raster.values.begin(), raster.values.end());
+}
+
 files::Result<void> fill(const DomainField& field, const files::NameTable& markers,
                          v1::NamedField& out) {
   if (!field.distance) {

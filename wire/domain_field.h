@@ -11,6 +11,7 @@
 #include <tl/expected.hpp>
 
 #include "files/base/error.h"
+#include "files/formats/field_raster.h"
 #include "files/formats/marker_list.h"
 #include "files/formats/names.h"
 #include "weft/v1/mesh_service.pb.h"
@@ -25,6 +26,9 @@ struct DomainField {
   // that says what is wrong.
   static std::optional<tl::expected<DomainField, std::string>> parse(const std::string& kind);
 };
+
+// A field of a raster's values.
+void fill(const files::FieldRaster& raster, v1::NamedField& out);
 
 // Errors: kUsage for a name that no marker has.
 files::Result<void> fill(const DomainField& field, const files::NameTable& markers,

@@ -76,14 +76,7 @@ struct Filler {
         : domain.system ? read_field_raster_in(file, band, box, *domain.system, most_raster_values)
                         : read_field_raster(file, band, box, most_raster_values);
     if (!read) return tl::unexpected(read.error());
-    v1::FieldRaster& to = *out.mutable_raster();
-    to.set_x(read->x);
-    to.set_y(read->y);
-    to.set_dx(read->dx);
-    to.set_dy(read->dy);
-    to.set_columns(read->columns);
-    to.set_rows(read->rows);
-    to.mutable_values()->Add(read->values.begin(), read->values.end());
+    wire::fill(*read, out);
     return std::move(read->warnings);
   }
   Result<Warnings> operator()(const FieldOption::OnMesh& on_mesh) const {

@@ -91,14 +91,7 @@ std::optional<Problem> add_fields(std::vector<FieldFile> fields, const files::Do
     if (!read) return opened->texts.problem(read.error());
     v1::NamedField& named = *size.add_fields();
     named.set_name(field.field);
-    v1::FieldRaster& raster = *named.mutable_raster();
-    raster.set_x(read->x);
-    raster.set_y(read->y);
-    raster.set_dx(read->dx);
-    raster.set_dy(read->dy);
-    raster.set_columns(read->columns);
-    raster.set_rows(read->rows);
-    raster.mutable_values()->Add(read->values.begin(), read->values.end());
+    wire::fill(*read, named);
     for (const std::string& warning : read->warnings) warnings.push_back(opened->texts(warning));
   }
   return std::nullopt;
