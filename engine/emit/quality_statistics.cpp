@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/emit/quality_statistics.h"
 
-#include <emmintrin.h>
 #include <sleef.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <limits>
 #include <numeric>
 
+#include "engine/base/simd.h"
 #include "engine/size/size_function.h"
 
 namespace weft {

@@ -27,14 +27,13 @@
 // per task.
 #pragma once
 
-#include <smmintrin.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "engine/base/geometry.h"
+#include "engine/base/simd.h"
 #include "engine/domain/triangulation/predicates.h"
 #include "engine/refine/lens.h"
 #include "engine/refine/ownership.h"

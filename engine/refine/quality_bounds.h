@@ -10,14 +10,13 @@
 // Thread-safety: values and pure functions.
 #pragma once
 
-#include <smmintrin.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
+#include "engine/base/simd.h"
 #include "engine/refine/cavity.h"
 #include "engine/refine/lens.h"
 #include "engine/refine/storage/mesh_store.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/refine/triangle_block.h"
 
-#include <emmintrin.h>
-
 #include <algorithm>
+
+#include "engine/base/simd.h"
 
 namespace weft {
 

@@ -18,12 +18,11 @@
 // 3.8 ms.
 #pragma once
 
-#include <smmintrin.h>
-
 #include <algorithm>
 #include <cstdint>
 
 #include "engine/base/geometry.h"
+#include "engine/base/simd.h"
 #include "engine/domain/face.h"
 
 namespace weft {

@@ -2,7 +2,7 @@
 // Eight floats in two registers of SSE, or eight masks of all bits or none.
 #pragma once
 
-#include <smmintrin.h>
+#include "engine/base/simd.h"
 
 namespace weft {
 

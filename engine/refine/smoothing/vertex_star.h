@@ -19,8 +19,6 @@
 // thread-safe: one per task.
 #pragma once
 
-#include <emmintrin.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,6 +28,7 @@
 #include <vector>
 
 #include "engine/base/geometry.h"
+#include "engine/base/simd.h"
 #include "engine/domain/triangulation/predicates.h"
 #include "engine/refine/area_bound.h"
 #include "engine/refine/cavity.h"

@@ -9,12 +9,11 @@
 // uses it, and later who emits it.
 #pragma once
 
-#include <emmintrin.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <vector>
 
+#include "engine/base/simd.h"
 #include "engine/refine/storage/mesh_store.h"
 
 namespace weft {

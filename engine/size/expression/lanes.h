@@ -17,11 +17,17 @@
 #pragma once
 
 #include <sleef.h>
-#include <smmintrin.h>
 
 #include <cassert>
 
+#include "engine/base/simd.h"
 #include "engine/size/expression/operation.h"
+
+#ifdef __SSE4_1__
+#define WEFT_SLEEF(function) Sleef_cinz_##function##sse4
+#else
+#define WEFT_SLEEF(function) Sleef_cinz_##function##advsimdnofma
+#endif
 
 namespace weft::expr {
 
@@ -46,19 +52,19 @@ struct Ceil {
   static Lanes of(Lanes a) { return _mm_ceil_pd(a); }
 };
 struct Exp {
-  static Lanes of(Lanes a) { return Sleef_cinz_expd2_u10sse4(a); }
+  static Lanes of(Lanes a) { return WEFT_SLEEF(expd2_u10)(a); }
 };
 struct Log {
-  static Lanes of(Lanes a) { return Sleef_cinz_logd2_u35sse4(a); }
+  static Lanes of(Lanes a) { return WEFT_SLEEF(logd2_u35)(a); }
 };
 struct Sin {
-  static Lanes of(Lanes a) { return Sleef_cinz_sind2_u35sse4(a); }
+  static Lanes of(Lanes a) { return WEFT_SLEEF(sind2_u35)(a); }
 };
 struct Cos {
-  static Lanes of(Lanes a) { return Sleef_cinz_cosd2_u35sse4(a); }
+  static Lanes of(Lanes a) { return WEFT_SLEEF(cosd2_u35)(a); }
 };
 struct Tan {
-  static Lanes of(Lanes a) { return Sleef_cinz_tand2_u35sse4(a); }
+  static Lanes of(Lanes a) { return WEFT_SLEEF(tand2_u35)(a); }
 };
 
 // x^n by squaring, from the exponent's highest bit down: x^5 is (x^2)^2 * x.
@@ -107,13 +113,13 @@ struct Max {
   static Lanes of(Lanes a, Lanes b) { return _mm_or_pd(_mm_max_pd(a, b), _mm_cmpunord_pd(a, a)); }
 };
 struct Pow {
-  static Lanes of(Lanes a, Lanes b) { return Sleef_cinz_powd2_u10sse4(a, b); }
+  static Lanes of(Lanes a, Lanes b) { return WEFT_SLEEF(powd2_u10)(a, b); }
 };
 struct Atan2 {
-  static Lanes of(Lanes a, Lanes b) { return Sleef_cinz_atan2d2_u35sse4(a, b); }
+  static Lanes of(Lanes a, Lanes b) { return WEFT_SLEEF(atan2d2_u35)(a, b); }
 };
 struct Hypot {
-  static Lanes of(Lanes a, Lanes b) { return Sleef_cinz_hypotd2_u35sse4(a, b); }
+  static Lanes of(Lanes a, Lanes b) { return WEFT_SLEEF(hypotd2_u35)(a, b); }
 };
 
 struct Coalesce {

@@ -20,13 +20,12 @@
 // Wider vectors do not justify a choice by processor. Expression::evaluate adds 2 ns per call.
 #pragma once
 
-#include <smmintrin.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "engine/base/simd.h"
 #include "engine/size/expression/expression.h"
 #include "engine/size/expression/program.h"
 

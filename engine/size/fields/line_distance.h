@@ -5,13 +5,12 @@
 // d to the line from a to a + (b - a), b - a rounded; whatever lies below is built on twice that.
 #pragma once
 
-#include <smmintrin.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "engine/base/geometry.h"
+#include "engine/base/simd.h"
 
 namespace weft {
 
