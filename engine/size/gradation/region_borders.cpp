@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/size/gradation/region_borders.h"
 
+#include <sleef.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -14,8 +16,9 @@ std::vector<double> groups_of(std::vector<double> bounds) {
   std::sort(bounds.begin(), bounds.end());
   std::vector<double> groups;
   if (bounds.empty()) return groups;
-  const double range = std::log(bounds.back()) - std::log(bounds.front());
-  const double apart = std::max(kSame, std::exp(range / (kMaxRegionBorders - 1)));
+  const double range =
+      Sleef_cinz_logd1_u10purec(bounds.back()) - Sleef_cinz_logd1_u10purec(bounds.front());
+  const double apart = std::max(kSame, Sleef_cinz_expd1_u10purec(range / (kMaxRegionBorders - 1)));
   for (const double bound : bounds)
     if (groups.empty() || bound > apart * groups.back()) groups.push_back(bound);
   return groups;
