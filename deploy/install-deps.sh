@@ -2,24 +2,25 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs the Debian 12 packages that weft needs; says nothing and changes nothing where they are.
 #
-#   deploy/install-deps.sh [GROUP...]
+#   deploy/install-deps.sh [--list] [GROUP...]      --list prints their names instead
 #     build    compiles everything
+#     libraries  what it links, of build
 #     console  builds the console's pages into weftd: npm, unless there is one
 #     geo      compiles a weft that reads rasters, projects longitude and latitude, divides meshes
 #     python   runs weft for Python from the build folder, longitude and latitude included
 #     weftd    runs weftd
 #     weft     runs a weft that was compiled with geo; its own weftd needs weftd, too
 #     test     what tests/run.sh needs beyond build and geo
+#     arm64    for tests/deep.sh arm64: compiles for arm64 on another machine, and runs that
 #     solvers  FEniCSx, FreeFem++ and CalculiX, 130 packages, for tests/deep.sh solvers
 #     all      build, console, geo and test, the default
 set -euo pipefail
 
-build=(
-  ca-certificates git clang cmake ninja-build ccache pkg-config python3
-  libgrpc++-dev libprotobuf-dev protobuf-compiler protobuf-compiler-grpc # the wire
-  libprotozero-dev
+libraries=(
+  libstdc++-12-dev
+  libgrpc++-dev libprotobuf-dev libprotozero-dev                         # the wire
   libcgal-dev libgmp-dev libmpfr-dev libboost-dev                        # exact geometry
-  libtbb-dev libsleef-dev libexpected-dev                                # the engine
+  libtbb-dev libsleef-dev libsimde-dev libexpected-dev                   # the engine
   libspdlog-dev libfmt-dev libssl-dev                                    # the server
   libsqlite3-dev libpq-dev prometheus-cpp-dev                            # its jobs and its metrics
   libcli11-dev nlohmann-json3-dev libcairo2-dev fonts-dejavu-core        # the command line
@@ -27,6 +28,12 @@ build=(
   zlib1g-dev liblzma-dev libshp-dev                                      # .npz, .vtu, shapefiles
   libgtest-dev libgmock-dev librapidcheck-dev                            # tests
 )
+build=(
+  ca-certificates git clang cmake ninja-build ccache pkg-config python3
+  protobuf-compiler protobuf-compiler-grpc
+  "${libraries[@]}"
+)
+arm64=(lld qemu-user-static mmdebstrap)
 geo=(libgdal-dev libproj-dev libmetis-dev)
 python=(python3-grpcio python3-protobuf python3-numpy python3-pyproj)
 weftd=(
@@ -69,9 +76,13 @@ test+=("${console[@]}") # the linters
 
 solvers=(python3-dolfinx freefem++ calculix-ccx)
 
+list=
+[[ ${1:-} != --list ]] || { list=1 && shift; }
 wanted=()
 for group in "${@:-all}"; do
   case $group in
+    libraries) wanted+=("${libraries[@]}") ;;
+    arm64) wanted+=("${arm64[@]}") ;;
     build) wanted+=("${build[@]}") ;;
     console) wanted+=("${console[@]}") ;;
     python) wanted+=("${python[@]}") ;;
@@ -82,11 +93,16 @@ for group in "${@:-all}"; do
     solvers) wanted+=("${solvers[@]}") ;;
     all) wanted+=("${build[@]}" "${console[@]}" "${geo[@]}" "${test[@]}") ;;
     *)
-      echo "install-deps.sh: unknown group '$group'; there are build, console, geo, python, weftd, weft, test, solvers, all" >&2
+      echo "install-deps.sh: unknown group '$group'; there are build, libraries, console, geo, python, weftd, weft, test, arm64, solvers, all" >&2
       exit 2
       ;;
   esac
 done
+
+if [[ $list ]]; then
+  printf '%s\n' "${wanted[@]}"
+  exit 0
+fi
 
 installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' | sed -n 's/^installed //p')
 mapfile -t missing < <(printf '%s\n' "${wanted[@]}" | sort -u | grep -vxF -f <(echo "$installed"))
