@@ -61,21 +61,26 @@ class Help:
         return [row for group in self.flags.values() for row in group]
 
 
+def _printed_by(program, *words):
+    """Where no variable of weft is set. WEFT_EMULATOR is the command that runs programs of another
+    processor."""
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("WEFT_")}
+    emulator = os.environ.get("WEFT_EMULATOR", "").split()
+    return subprocess.run([*emulator, program, *words], check=True, capture_output=True, text=True,
+                          env=environment).stdout
+
+
 def help_of(program, *words):
     """The help, as it is where no variable of weft is set."""
-    environment = {k: v for k, v in os.environ.items() if not k.startswith("WEFT_")}
-    text = subprocess.run([program, *words, "--help"], check=True, capture_output=True, text=True,
-                          env=environment).stdout
     # Programs name themselves as they were called; defaults that the machine decides are left out.
-    text = text.replace(str(program), pathlib.Path(program).name)
+    text = _printed_by(program, *words, "--help").replace(str(program), pathlib.Path(program).name)
     text = re.sub(r"^(  --threads .*)=\d+ \(", r"\1 (", text, flags=re.M)
     return "\n".join(line.rstrip() for line in text.strip().splitlines())
 
 
 def version_of(program):
     """As 0.1.0."""
-    return subprocess.run([program, "--version"], check=True, capture_output=True,
-                          text=True).stdout.split()[1]
+    return _printed_by(program, "--version").split()[1]
 
 
 def commands_of(weft):
