@@ -113,12 +113,13 @@ const wire::MarkerOption& marker_option(std::string_view name) {
   return *std::ranges::find(wire::marker_options(), name, &wire::MarkerOption::name);
 }
 
-// One that names markers.
-OptionRow<Request> of_markers(std::string_view name) {
-  const wire::MarkerOption& option = marker_option(name);
-  return {
-      option.name, option.variable,    option.about + (option.repeats ? ". May be repeated" : ""),
-      "",          marker_value(name), option.path};
+// Those that name markers, of a part of the request.
+void add_of_markers(std::string_view part, OptionRows<Request>& rows) {
+  for (const wire::MarkerOption& option : wire::marker_options())
+    if (option.path.starts_with(part))
+      rows.push_back({option.name, option.variable,
+                      option.about + (option.repeats ? ". May be repeated" : ""), "",
+                      marker_value(option.name), option.path});
 }
 
 // Those whose fields begin so. The quadtree is asked for by what draws it.
@@ -132,7 +133,7 @@ const OptionRows<Request>& other_rows() {
   static const OptionRows<Request> rows = [] {
     OptionRows<Request> all;
     add_named("quality.", all);
-    for (const char* name : {"keep", "periodic", "layers"}) all.push_back(of_markers(name));
+    add_of_markers("quality.", all);
     all.push_back(
         {"fill", "WEFT_FILL",
          "What is meshed where polygons overlap: union all that any of them covers, even-odd what "
@@ -183,7 +184,7 @@ const OptionRows<Request>& size_rows() {
          "an earlier mesh; or FILE[:BAND], the values of a raster. May be repeated",
          "", list("NAME=KIND", &Request::fields, FieldOption::parse), "size.fields"},
     };
-    all.push_back(of_markers("edge-at"));
+    add_of_markers("size.", all);
     add_named("size.", all);
     return noted(std::move(all));
   }();
