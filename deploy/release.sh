@@ -4,8 +4,9 @@
 #
 #   deploy/release.sh OUT      OUT is a folder, which is made and must be empty
 #
-# packages for Debian, the package for Python with and without programs and as sources, the images as
-# OCI archives, the Helm chart, a software bill of materials (CycloneDX), the changelog, and SHA256SUMS of
+# packages for Debian, the package for Python with and without programs and as sources, both for arm64, too, if
+# `deploy/install-deps.sh arm64` has installed what that takes, the images of this machine's processor as OCI
+# archives, the Helm chart, a software bill of materials (CycloneDX), the changelog, and SHA256SUMS of
 # them. The version is that of CMakeLists.txt; the maintainer of the packages for Debian is
 # WEFT_MAINTAINER, if that is set. Needs what deploy/install-deps.sh installs, and root for the images:
 # without root, or buildah or debootstrap, it says that they are left out.
@@ -62,6 +63,22 @@ mv "$scratch"/packages/*.deb "$out"
 
 say "packages for Python"
 /usr/bin/python3 -B deploy/package/wheels.py build/portable "$out"
+
+tools=(mmdebstrap ld.lld qemu-aarch64-static aarch64-linux-gnu-strip)
+if (($(command -v "${tools[@]}" | wc -l) == ${#tools[@]})); then
+  say "packages for arm64"
+  deploy/arm64/sysroot.sh
+  for preset in release-arm64 portable-arm64; do
+    build $preset >"$scratch/build.log" 2>&1 ||
+      fail "the preset $preset does not build: $(tail -n 30 "$scratch/build.log")"
+  done
+  deploy/arm64/packages.sh build/release-arm64 "$scratch/arm64" >"$scratch/cpack.log" 2>&1 ||
+    fail "cpack failed: $(tail "$scratch/cpack.log")"
+  mv "$scratch"/arm64/*_arm64.deb "$out"
+  /usr/bin/python3 -B deploy/package/wheels.py build/portable-arm64 "$out"
+else
+  echo "arm64 is left out, for want of what deploy/install-deps.sh arm64 installs"
+fi
 
 say "bill of materials"
 /usr/bin/python3 -B deploy/package/bill_of_materials.py build/release "$out/weft-$version.cdx.json"

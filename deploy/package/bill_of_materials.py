@@ -94,7 +94,7 @@ def npm_components():
 def linked(build, kind, name, file, version):
     """The component of a program or library, and those of the packages that it is made of."""
     parts = components.packages_of({*components.loaded_by(build / file).values(),
-                                    *components.compiled_into(build, file)})
+                                    *components.compiled_into(build, file)}, components.root_of(build))
     return {"type": kind, "bom-ref": name, "name": name, "version": version,
             "licenses": [{"license": {"id": "Apache-2.0"}}]}, [of_debian(part) for part in sorted(parts)]
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Packages for Debian: `cpack` in the build folder makes weft, weftd, python3-weft, libweft0, libweft-dev
-# and weft-protocol-dev.
+# and weft-protocol-dev; deploy/arm64/packages.sh those for arm64.
 set(CPACK_GENERATOR DEB)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_ALL weft weftd python3-weft libweft0 library protocol)
@@ -18,6 +18,9 @@ set(WEFT_MAINTAINER "Unpublished build of weft <nobody@weft.invalid>" CACHE STRI
 set(CPACK_PACKAGE_CONTACT "${WEFT_MAINTAINER}")
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+if(CMAKE_CROSSCOMPILING)
+  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE arm64)
+endif()
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 # Which package programs need that are linked with libweft.so.0.
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)

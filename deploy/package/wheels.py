@@ -4,18 +4,20 @@
 
     deploy/package/wheels.py BUILD OUT
 
-BUILD is a folder in which weft, weftd and libweft.so were built, by the preset `portable`. OUT gets
+BUILD is a folder in which weft, weftd and libweft.so were built, by the preset `portable`, or
+`portable-arm64`. OUT gets
     weftmesh-VERSION.tar.gz                                  the sources
     weftmesh-VERSION-py3-none-any.whl                        the package, which needs a server
-    weftmesh-VERSION-py3-none-manylinux_2_36_x86_64.whl      with weft, weftd and libweft.so, and what they load
+    weftmesh-VERSION-py3-none-manylinux_2_36_MACHINE.whl     with weft, weftd and libweft.so, and what they load
 
 The last one has no projections and no rasters but .asc: PROJ loads a library under the GPL (libjbig),
-GDAL hundreds of megabytes. It runs on every x86-64 Linux with glibc 2.36: every file in it is checked
-against what manylinux_2_36 (PEP 600) lets a wheel expect of a system, as the policy of auditwheel lists
-it. It expects less than that allows: glibc and the libraries of GCC, because small systems have no others.
+GDAL hundreds of megabytes. MACHINE is x86_64 or aarch64; the wheel runs on every Linux there with glibc
+2.36: every file in it is checked against what manylinux_2_36 (PEP 600) lets a wheel expect of a system, as
+the policy of auditwheel lists it. It expects less than that allows: glibc and the libraries of GCC, because small systems have no others.
 With SOURCE_DATE_EPOCH the same build gives the same files, byte for byte.
 
-Needs Debian's python3-pip, python3-setuptools, python3-wheel, protobuf-compiler and patchelf.
+Needs Debian's python3-pip, python3-setuptools, python3-wheel, protobuf-compiler and patchelf; for arm64 on
+another machine what `deploy/install-deps.sh arm64` installs.
 """
 import gzip
 import io
@@ -32,11 +34,10 @@ import components
 from components import output_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PLATFORM = "manylinux_2_36_x86_64"
 # What the wheel does not carry, and the newest version of each kind of symbol in it.
-OF_THE_SYSTEM = {"ld-linux-x86-64.so.2", "libanl.so.1", "libc.so.6", "libdl.so.2", "libgcc_s.so.1",
-                 "libm.so.6", "libmvec.so.1", "libpthread.so.0", "libresolv.so.2", "librt.so.1",
-                 "libstdc++.so.6", "libutil.so.1"}
+OF_THE_SYSTEM = {"ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1", "libanl.so.1", "libc.so.6",
+                 "libdl.so.2", "libgcc_s.so.1", "libm.so.6", "libmvec.so.1", "libpthread.so.0",
+                 "libresolv.so.2", "librt.so.1", "libstdc++.so.6", "libutil.so.1"}
 UNDER_THE_GPL = {"libjbig.so.0", "libreadline.so.8"}  # without an exception for what links them
 NEWEST = {"CXXABI": (1, 3, 13), "GCC": (12, 0, 0), "GLIBC": (2, 36), "GLIBCXX": (3, 4, 30)}
 LIBRARY = "libweft.so.0"
@@ -96,13 +97,18 @@ def is_expected(symbol):
     return kind in NEWEST and bool(numbers) and tuple(map(int, version.split("."))) <= NEWEST[kind]
 
 
-def faults(folder):
+def binutils(build):
+    """What goes before the names of the tools for the programs of a build."""
+    return "" if components.root_of(build) == pathlib.Path("/") else "aarch64-linux-gnu-"
+
+
+def faults(folder, tools=""):
     """What of the programs and libraries in a folder, in bin/ and lib/, a wheel may not have."""
     carried = {path.name for path in (folder / "lib").iterdir()}
     for name in sorted(carried & UNDER_THE_GPL):
         yield f"{name} is under the GPL"
     for path in sorted([*(folder / "bin").iterdir(), *(folder / "lib").iterdir()]):
-        headers = output_of("objdump", "-p", path)
+        headers = output_of(f"{tools}objdump", "-p", path)
         for name in re.findall(r"^  NEEDED +(\S+)", headers, re.M):
             if name not in carried | OF_THE_SYSTEM:
                 yield f"{path.name} needs {name}, which the system need not have"
@@ -133,7 +139,7 @@ def carry(build, folder):
     shutil.copy(library, folder / "lib" / LIBRARY)
     for path in [*(folder / "bin").iterdir(), *(folder / "lib").iterdir()]:
         path.chmod(0o755)
-        subprocess.run(["strip", "--strip-unneeded", path], check=True)
+        subprocess.run([f"{binutils(build)}strip", "--strip-unneeded", path], check=True)
         # RPATH, not RUNPATH: it holds for what the libraries load, too, and goes before
         # LD_LIBRARY_PATH, which belongs to programs of the user.
         rpath = "$ORIGIN/../lib" if path.parent.name == "bin" else "$ORIGIN"
@@ -141,11 +147,11 @@ def carry(build, folder):
     return set(copied.values())
 
 
-def add_licences(folder, files):
+def add_licences(folder, files, root):
     """The copyright file of each package that a file came from, and the texts that it refers to."""
     shutil.copytree(ROOT / "LICENSES", folder / "weft")
     (folder / "common-licenses").mkdir()
-    for package in components.packages_of(files):
+    for package in components.packages_of(files, root):
         (folder / package.name).mkdir()
         shutil.copy(package.copyright, folder / package.name)
         for text in package.common_licences():
@@ -158,15 +164,16 @@ def build_platform(pure, build, scratch, out):
     wheel = only(scratch, "weftmesh-*")
     carried = wheel / "weft/carried"
     files = carry(build, carried)
-    if found := list(faults(carried)):
-        sys.exit("wheels.py: not " + PLATFORM + ":\n  " + "\n  ".join(found))
+    platform = f"manylinux_2_36_{'aarch64' if binutils(build) else os.uname().machine}"
+    if found := list(faults(carried, binutils(build))):
+        sys.exit("wheels.py: not " + platform + ":\n  " + "\n  ".join(found))
     for program in ("weft", "weftd"):
         files |= components.compiled_into(build, program)
     meta = only(wheel, "*.dist-info")
-    add_licences(meta / "licenses", files)
+    add_licences(meta / "licenses", files, components.root_of(build))
     (meta / "entry_points.txt").write_text(SCRIPTS)
     tags = (meta / "WHEEL").read_text().replace("Root-Is-Purelib: true", "Root-Is-Purelib: false")
-    (meta / "WHEEL").write_text(tags.replace("Tag: py3-none-any", f"Tag: py3-none-{PLATFORM}"))
+    (meta / "WHEEL").write_text(tags.replace("Tag: py3-none-any", f"Tag: py3-none-{platform}"))
     python("-m", "wheel", "pack", wheel, "-d", out, cwd=scratch)
 
 
