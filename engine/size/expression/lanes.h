@@ -3,10 +3,11 @@
 // and the end points of intervals share this definition.
 //
 // Every function here gives a lane the same bits whatever the other lane holds, and on every
-// x86-64-v2 machine. Arithmetic is IEEE. The transcendental functions are SLEEF's `cinz` ones
-// (deterministic across widths, no fused multiply-add) in their sse4 form, named in full because
-// the names without the suffix choose an implementation by processor. If SLEEF has two accuracies,
-// the faster one is used, because a size needs no last digit. For 8 lanes, in ns:
+// x86-64-v2 and arm64 machine. Arithmetic is IEEE. The transcendental functions are SLEEF's `cinz`
+// ones (deterministic across widths, no fused multiply-add) in their sse4 or advsimdnofma form,
+// named in full because the names without the suffix choose an implementation by processor. If
+// SLEEF has two accuracies, the faster one is used, because a size needs no last digit. For 8
+// lanes, in ns:
 //
 //            sin   cos   tan   log   hypot  atan2   exp   pow
 //   3.5 ulp   25    28    36    30      14     57     -     -
