@@ -3,15 +3,16 @@
 # What tests/run.sh leaves out: every test under AddressSanitizer with UndefinedBehaviorSanitizer, and
 # every test of threads under ThreadSanitizer; everything compiled by g++, too, with warnings as errors;
 # fuzzing; the container; the packages; solvers that take meshes; the documents as they run on other processors;
-# servers under load and under attack for longer. Prints each step with its seconds and fails when any failed.
+# packages and tests of arm64 under qemu; servers under load and under attack for longer. Prints each step with
+# its seconds and fails when any failed.
 #
-#   tests/deep.sh [STEP...]     STEP: asan tsan gcc fuzz container packages solvers processors soak;
+#   tests/deep.sh [STEP...]     STEP: asan tsan gcc fuzz container packages solvers processors arm64 soak;
 #                               default: all
 #
 # WEFT_FUZZ_MINUTES (1 if not set) is how long, about, each target is fuzzed.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit
-known=(asan tsan gcc fuzz container packages solvers processors soak)
+known=(asan tsan gcc fuzz container packages solvers processors arm64 soak)
 for name in "$@"; do
   [[ " ${known[*]} " == *" $name "* ]] || {
     echo "deep.sh: unknown step '$name'; there are ${known[*]}" >&2
@@ -69,6 +70,20 @@ deep_processors() {
   for processor in own avx2 sse4 plain-numpy; do
     step "documents, $processor" \
       /usr/bin/python3 -B tests/documents/documents.py --processor "$processor" build/release
+  done
+}
+
+# qemu takes 10 to 30 times as long.
+deep_arm64() {
+  step "install arm64's tools" deploy/install-deps.sh arm64 &&
+    step "sysroot, arm64" deploy/arm64/sysroot.sh &&
+    step "build, arm64" build release-arm64 &&
+    step "build, portable, arm64" build portable-arm64 || return
+  step "packages, arm64" tests/arm64.sh build/release build/release-arm64 build/portable-arm64
+  local folder
+  for folder in engine checker; do
+    step "tests, arm64, $folder" ctest --test-dir build/release-arm64/tests/$folder -j "$(nproc)" \
+      --no-tests=error --output-on-failure --timeout 7200
   done
 }
 
