@@ -20,6 +20,12 @@ class SizeFunction : public Field {
   // The inverse of area_of_edge.
   static double edge_of_area(double area) { return std::sqrt(area / 0.4330127018922193); }
 
+  // The lesser of an area and that of an edge; NaN if the area is.
+  static double least(double area, double edge) {
+    const double of_edge = area_of_edge(edge);
+    return of_edge < area ? of_edge : area;
+  }
+
   // A size that varies must be finite, also in a part of the domain that no limit reaches: there
   // edges have this length, and triangles count as unbounded.
   static constexpr double kUnreachedEdge = 1e50;

@@ -14,6 +14,7 @@
 #include "engine/size/constant_size.h"
 #include "engine/size/edge_size.h"
 #include "engine/size/expression/expression.h"
+#include "engine/size/field_size.h"
 #include "engine/size/fields/distance_field.h"
 #include "engine/size/fields/mesh_field.h"
 #include "engine/size/fields/raster_field.h"
@@ -22,9 +23,7 @@
 #include "engine/size/gradation/graded_size.h"
 #include "engine/size/gradation/region_borders.h"
 #include "engine/size/least_size.h"
-#include "engine/size/line_size.h"
 #include "engine/size/raster.h"
-#include "engine/size/width_size.h"
 #include "weft/weft.h"
 
 namespace weft {
@@ -415,9 +414,10 @@ Result<Size> make_size(const SizeSpec& spec, const Pslg& pslg, const Domain& dom
   if (!size) return size;
   size->keep(std::move(fields));
   if (spec.cells_across > 0) {
-    auto width = WidthField::make(domain, context);
+    auto width = on_heap(WidthField::make(domain, context));
     if (!width) return tl::unexpected(std::move(width).error());
-    size->add(std::make_unique<WidthSize>(size->function(), std::move(*width), spec.cells_across));
+    size->add(std::make_unique<FieldSize>(size->function(), std::move(*width),
+                                          EdgesByField{.parts = spec.cells_across}));
   }
   const SizeFunction& unlimited = size->function();
   if (spec.gradation > 0 && !unlimited.constant()) {
@@ -430,10 +430,11 @@ Result<Size> make_size(const SizeSpec& spec, const Pslg& pslg, const Domain& dom
     if (auto error = context.need_bytes(
             domain.bytes() + size->bytes() + DistanceField::bytes_to_make(lines.size()), what))
       return error;
-    auto distance = distance_to(std::move(lines), domain, context);
+    auto distance = on_heap(distance_to(std::move(lines), domain, context));
     if (!distance) return std::move(distance).error();
-    size->limit(unlimited, std::make_unique<LineSize>(size->function(), std::move(*distance),
-                                                      max_edge, spec.gradation));
+    size->limit(unlimited, std::make_unique<FieldSize>(
+                               size->function(), std::move(*distance),
+                               EdgesByField{.base = max_edge, .growth = spec.gradation}));
     return std::nullopt;
   };
   for (std::size_t i = 0; i < spec.at.size(); ++i) {

@@ -15,12 +15,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // More than the few operations of a comparison round.
 constexpr double kSlack = 1e-12;
 
-// NaN if the size is NaN.
-double least(double size, double edge) {
-  const double area = area_of_edge(edge);
-  return area < size ? area : size;
-}
-
 }  // namespace
 
 // Halves pieces of the range of distances until the size over each piece is

@@ -80,12 +80,6 @@ class GradedSize final : public SizeFunction {
 
   GradedSize(const SizeFunction& size, LimitTree limit) : size_(&size), limit_(std::move(limit)) {}
 
-  // NaN if the size is.
-  static double least(double size, double edge) {
-    const double area = area_of_edge(edge);
-    return area < size ? area : size;
-  }
-
   const SizeFunction* size_;
   LimitTree limit_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The borders of regions that have their own bound on areas. With a gradation, the size outside
-// such a region grows from these lines (line_size.h).
+// such a region grows from these lines (field_size.h).
 #pragma once
 
 #include <cstddef>
