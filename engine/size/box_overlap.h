@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -20,6 +21,10 @@ inline Corners corners_of(const Domain& domain, std::uint32_t t) {
 
 inline Point middle(const Box& box) {
   return {box.min_x + 0.5 * (box.max_x - box.min_x), box.min_y + 0.5 * (box.max_y - box.min_y)};
+}
+
+inline double diagonal(const Box& box) {
+  return std::sqrt(box.width() * box.width() + box.height() * box.height());
 }
 
 // In Morton order.

@@ -3,10 +3,10 @@
 
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "engine/size/box_overlap.h"
+#include "engine/size/domain_boxes.h"
 
 namespace weft {
 namespace {
@@ -23,13 +23,10 @@ bool contains(const Box& outer, const Box& inner) {
          inner.max_y <= outer.max_y;
 }
 
-// A node that is to be looked at, with the triangles of the domain that it overlaps, at least one.
+// A node that is to be looked at: it overlaps at least one triangle of the domain.
 struct Pending {
   std::uint32_t node = 0;
-  std::uint32_t first = 0;  // of Level::triangles
-  std::uint32_t count = 0;
-  bool inside = false;  // the only one
-  Box box{};
+  DomainBox at{};  // triangles of the level
 };
 
 struct Level {
@@ -41,9 +38,8 @@ struct Level {
 struct Look {
   Interval bounds{};
   bool split = false;
-  bool inside = false;
-  std::array<std::uint32_t, 4> overlaps{};  // of each child, if it is split
-  double area = 0;                          // of what it shares with the domain, if it is not split
+  std::array<DomainBox, 4> children{};  // if it is split
+  double area = 0;                      // of what it shares with the domain, if it is not
 };
 
 // Nodes that one thread looks at.
@@ -53,56 +49,32 @@ struct Group {
   std::optional<Error> stopped;
 };
 
-// Polls once in a while: one box may overlap millions of triangles.
-class Poll {
- public:
-  explicit Poll(const ExecutionContext& context) : context_(context) {}
-  std::optional<Error> operator()() {
-    constexpr std::uint32_t kInterval = 1 << 14;
-    return ++count_ % kInterval == 0 ? context_.poll() : std::nullopt;
-  }
-
- private:
-  const ExecutionContext& context_;
-  std::uint32_t count_ = 0;
-};
-
-double common_area(const Level& level, const Pending& pending, const Domain& domain) {
+Result<double> common_area(const Level& level, const DomainBox& at, const Domain& domain,
+                           TrianglePoll& poll) {
   double area = 0;
-  for (std::uint32_t i = 0; i < pending.count; ++i)
-    area += common_part(pending.box, corners_of(domain, level.triangles[pending.first + i])).area();
+  for (std::uint32_t i = 0; i < at.count; ++i) {
+    if (auto error = poll()) return tl::unexpected(std::move(*error));
+    area += common_part(at.box, corners_of(domain, level.triangles[at.first + i])).area();
+  }
   return area;
 }
 
-Look look_at(const Level& level, const Pending& pending, const SizeFunction& size,
-             const Domain& domain, bool may_split, Poll& poll, Group& group) {
-  const std::uint32_t* const triangles = level.triangles.data() + pending.first;
-  Look look;
-  look.bounds = size.bounds(pending.box);
+std::optional<Error> look_at(const Level& level, const DomainBox& at, const SizeFunction& size,
+                             const Domain& domain, bool may_split, TrianglePoll& poll,
+                             Group& group) {
+  Look& look = group.looks.emplace_back();
+  look.bounds = size.bounds(at.box);
   const bool resolved = !look.bounds.may_be_nan && look.bounds.lo > 0 &&
                         look.bounds.hi <= SizeMap::kResolved * look.bounds.lo;
-  const double box_area = pending.box.width() * pending.box.height();
+  const double box_area = at.box.width() * at.box.height();
   const bool small = box_area <= SizeMap::kSmallBox * look.bounds.lo;
   look.split = !resolved && !small && may_split;
-  if (!look.split) {
-    for (std::uint32_t i = 0; i < pending.count; ++i) {
-      if ((group.stopped = poll())) return look;
-      look.area += common_part(pending.box, corners_of(domain, triangles[i])).area();
-    }
-    return look;
-  }
-  look.inside = pending.inside ||
-                (pending.count == 1 && inside(pending.box, corners_of(domain, triangles[0])));
-  for (unsigned child = 0; child < 4; ++child) {
-    const Box box = child_box(pending.box, child);
-    for (std::uint32_t i = 0; i < pending.count; ++i) {
-      if ((group.stopped = poll())) return look;
-      if (!look.inside && !overlap(box, corners_of(domain, triangles[i]))) continue;
-      group.triangles.push_back(triangles[i]);
-      ++look.overlaps[child];
-    }
-  }
-  return look;
+  if (look.split)
+    return split(at, level.triangles.data(), domain, poll, look.children, group.triangles);
+  const Result<double> area = common_area(level, at, domain, poll);
+  if (!area) return area.error();
+  look.area = *area;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -118,11 +90,8 @@ Result<SizeMap> SizeMap::build(const SizeFunction& size, const Domain& domain,
   map.nodes_.push_back(kOutside);
 
   Level level;
-  level.triangles.resize(domain.triangles.size());
-  std::iota(level.triangles.begin(), level.triangles.end(), 0u);
-  if (!level.triangles.empty())
-    level.nodes.push_back(
-        {.count = static_cast<std::uint32_t>(level.triangles.size()), .box = map.root_});
+  if (!domain.triangles.empty())
+    level.nodes.push_back({0, whole_domain(domain, map.root_, level.triangles)});
   std::vector<Group> groups;
   for (int depth = 0; !level.nodes.empty(); ++depth) {
     if (auto error = context.poll()) return tl::unexpected(*error);
@@ -132,18 +101,18 @@ Result<SizeMap> SizeMap::build(const SizeFunction& size, const Domain& domain,
       Group& group = groups[g];
       group.looks.clear();
       group.triangles.clear();
-      Poll poll(context);
+      TrianglePoll poll(context);
       const std::size_t end = std::min((g + 1) * kAtATime, level.nodes.size());
-      for (std::size_t i = g * kAtATime; i < end && !group.stopped; ++i) {
-        group.looks.push_back(
-            look_at(level, level.nodes[i], size, domain, depth < kMaxLevels, poll, group));
-      }
+      for (std::size_t i = g * kAtATime; i < end && !group.stopped; ++i)
+        group.stopped =
+            look_at(level, level.nodes[i].at, size, domain, depth < kMaxLevels, poll, group);
     });
     Level next;
+    TrianglePoll poll(context);
     for (std::size_t g = 0; g < groups.size(); ++g) {
       const Group& group = groups[g];
       if (group.stopped) return tl::unexpected(*group.stopped);
-      auto first = static_cast<std::uint32_t>(next.triangles.size());
+      const auto first = static_cast<std::uint32_t>(next.triangles.size());
       next.triangles.insert(next.triangles.end(), group.triangles.begin(), group.triangles.end());
       for (std::size_t i = 0; i < group.looks.size(); ++i) {
         const Pending& pending = level.nodes[g * kAtATime + i];
@@ -157,15 +126,18 @@ Result<SizeMap> SizeMap::build(const SizeFunction& size, const Domain& domain,
           const auto child = node.first_child = static_cast<std::uint32_t>(map.nodes_.size());
           map.nodes_.resize(child + 4, kOutside);
           for (unsigned c = 0; c < 4; ++c) {
-            if (look.overlaps[c] == 0) continue;
-            next.nodes.push_back(
-                {child + c, first, look.overlaps[c], look.inside, child_box(pending.box, c)});
-            first += look.overlaps[c];
+            if (look.children[c].count == 0) continue;
+            next.nodes.push_back({child + c, look.children[c]});
+            next.nodes.back().at.first += first;
           }
           continue;
         }
-        first += std::accumulate(look.overlaps.begin(), look.overlaps.end(), 0u);
-        const double area = look.split ? common_area(level, pending, domain) : look.area;
+        double area = look.area;
+        if (look.split) {
+          const Result<double> found = common_area(level, pending.at, domain, poll);
+          if (!found) return tl::unexpected(found.error());
+          area = *found;
+        }
         if (bounds.lo > 0 && !bounds.may_be_nan) map.triangles_lower_bound_ += area / bounds.hi;
         const double guess = expected(bounds.lo, bounds.hi);
         if (guess > 0) map.expected_triangles_ += area / guess;

@@ -5,13 +5,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "engine/size/box_overlap.h"
+#include "engine/size/domain_boxes.h"
 #include "engine/size/fields/polled_loop.h"
-#include "engine/size/gradation/domain_boxes.h"
 
 namespace weft {
 namespace {
@@ -49,10 +48,6 @@ double highest_over(const Source& s, double gradation, const Box& box) {
 double highest_below(const Source& s, double gradation, double x, double y) {
   return cone(s, gradation, std::max(s.box.max_x - x, x - s.box.min_x),
               std::max(s.box.max_y - y, y - s.box.min_y));
-}
-
-double diagonal(const Box& box) {
-  return std::sqrt(box.width() * box.width() + box.height() * box.height());
 }
 
 using List = std::vector<std::uint32_t>;
@@ -277,12 +272,8 @@ std::optional<Error> LimitTreeBuilder::judge(const Level& level, const Pending& 
   verdict.divided = true;
   verdict.listed = static_cast<std::uint32_t>(list.size());
   group.lists.insert(group.lists.end(), list.begin(), list.end());
-  const auto first = static_cast<std::uint32_t>(group.triangles.size());
-  if (auto error = split(pending.at, level.triangles.data(), domain_, poll, verdict.children,
-                         group.triangles))
-    return error;
-  for (DomainBox& child : verdict.children) child.first += first;
-  return std::nullopt;
+  return split(pending.at, level.triangles.data(), domain_, poll, verdict.children,
+               group.triangles);
 }
 
 void LimitTreeBuilder::take(const Level& level, std::size_t slot, const Group& group, Level& next) {
@@ -325,11 +316,8 @@ std::optional<Error> LimitTreeBuilder::hold(const Level& level, const Level& nex
 
 std::optional<Error> LimitTreeBuilder::run() {
   Level level;
-  level.triangles.resize(domain_.triangles.size());
-  std::iota(level.triangles.begin(), level.triangles.end(), 0u);
   level.lists.push_back(0);
-  level.boxes.push_back(
-      {{tree_.root_, 0, static_cast<std::uint32_t>(level.triangles.size()), false}, 0, 0, 1});
+  level.boxes.push_back({whole_domain(domain_, tree_.root_, level.triangles), 0, 0, 1});
   tree_.nodes_.emplace_back();
   std::vector<Group> groups;
   for (int depth = 0; !level.boxes.empty(); ++depth) {

@@ -5,14 +5,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "engine/size/box_overlap.h"
+#include "engine/size/domain_boxes.h"
 #include "engine/size/fields/distance_field.h"
 #include "engine/size/fields/polled_loop.h"
-#include "engine/size/gradation/domain_boxes.h"
 #include "engine/size/gradation/hull.h"
 #include "engine/size/gradation/lowest_samples.h"
 
@@ -24,10 +23,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSlack = 1e-9;
 // The areas of edges below this are not normal numbers.
 constexpr double kMinEdge = 1e-150;
-
-double diagonal(const Box& box) {
-  return std::sqrt(box.width() * box.width() + box.height() * box.height());
-}
 
 // A box that is to be looked at.
 struct Pending {
@@ -314,12 +309,7 @@ std::optional<Error> Builder::judge(const Level& level, const std::vector<Seen>&
     return std::nullopt;
   }
   verdict.fate = Fate::kDivided;
-  const auto before = static_cast<std::uint32_t>(group.triangles.size());
-  if (auto error =
-          split(at, level.triangles.data(), domain_, poll, verdict.children, group.triangles))
-    return error;
-  for (DomainBox& child : verdict.children) child.first += before;
-  return std::nullopt;
+  return split(at, level.triangles.data(), domain_, poll, verdict.children, group.triangles);
 }
 
 std::optional<Error> Builder::hold(const Level& level, const Level& next) {
@@ -371,10 +361,7 @@ std::size_t Builder::take(const Level& level, const std::vector<Seen>& seen, std
 
 Result<bool> Builder::run() {
   Level level;
-  level.triangles.resize(domain_.triangles.size());
-  std::iota(level.triangles.begin(), level.triangles.end(), 0u);
-  level.boxes.push_back(
-      {{root_square(domain_), 0, static_cast<std::uint32_t>(level.triangles.size()), false}, 0, 0});
+  level.boxes.push_back({whole_domain(domain_, root_square(domain_), level.triangles), 0, 0});
   level.families.emplace_back();
   drafts_.push_back({level.boxes[0].at.box, kInfinity, 0});
   std::vector<Seen> seen;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -46,8 +47,16 @@ class TrianglePoll {
   std::uint32_t count_ = 0;
 };
 
+// The box of a first level, which overlaps all triangles: sets them.
+inline DomainBox whole_domain(const Domain& domain, const Box& box,
+                              std::vector<std::uint32_t>& level_triangles) {
+  level_triangles.resize(domain.triangles.size());
+  std::iota(level_triangles.begin(), level_triangles.end(), 0u);
+  return {box, 0, static_cast<std::uint32_t>(level_triangles.size()), false};
+}
+
 // Sets the children of `parent`, in Morton order, and appends the triangles that each overlaps to
-// `triangles`; `first` counts from the size that it has before the call. Errors: those of the poll.
+// `triangles`. Errors: those of the poll.
 inline std::optional<Error> split(const DomainBox& parent, const std::uint32_t* level_triangles,
                                   const Domain& domain, TrianglePoll& poll,
                                   std::array<DomainBox, 4>& children,
@@ -55,17 +64,15 @@ inline std::optional<Error> split(const DomainBox& parent, const std::uint32_t* 
   const std::uint32_t* const from = level_triangles + parent.first;
   const bool inside =
       parent.inside || (parent.count == 1 && weft::inside(parent.box, corners_of(domain, from[0])));
-  std::uint32_t first = 0;
   for (unsigned c = 0; c < 4; ++c) {
     DomainBox& child = children[c];
-    child = {child_box(parent.box, c), first, 0, inside};
+    child = {child_box(parent.box, c), static_cast<std::uint32_t>(triangles.size()), 0, inside};
     for (std::uint32_t i = 0; i < parent.count; ++i) {
       if (auto error = poll()) return error;
       if (!inside && !overlap(child.box, corners_of(domain, from[i]))) continue;
       triangles.push_back(from[i]);
       ++child.count;
     }
-    first += child.count;
   }
   return std::nullopt;
 }
