@@ -2,11 +2,38 @@
 #include "engine/gradation_mesh.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <map>
 #include <utility>
 
+#include "engine/refinement.h"
 #include "engine/size/gradation/mesh_limit.h"
+#include "engine/size/gradation/scaled_size.h"
 
 namespace weft {
+namespace {
+
+// Takes the chunks of a mesh, and from them where lengths of edges grow from besides the size:
+// segments with sizes of their own, and regions.
+class GradationMesh final : public ChunkSink {
+ public:
+  // REQUIRES: the mesh is that of `request`, which outlives this.
+  explicit GradationMesh(const MeshRequest& request);
+
+  bool accept(Chunk&& chunk) override;
+
+  // The run holds `held` bytes besides. Errors: those of the context.
+  Result<MeshField> limit(const SizeFunction& size, std::uint64_t held,
+                          const ExecutionContext& context) &&;
+
+ private:
+  void lower(std::uint32_t v, double to);
+
+  const SizeSpec& size_;
+  std::map<std::int32_t, double> region_edges_;  // by the id; the least of several
+  FieldMesh mesh_;
+};
 
 GradationMesh::GradationMesh(const MeshRequest& request) : size_(request.size) {
   const auto add = [&](std::int32_t region, double max_area) {
@@ -18,11 +45,6 @@ GradationMesh::GradationMesh(const MeshRequest& request) : size_(request.size) {
     if (region.max_area) add(region.id, *region.max_area);
   for (const Area& area : request.pslg.areas)
     if (area.region && area.max_area) add(*area.region, *area.max_area);
-}
-
-// Above a gradation of 0.8, the mesh would have too many triangles.
-double GradationMesh::share_of_edges(double gradation) {
-  return std::clamp(kResolution / gradation, 0.1, 1.5);
 }
 
 void GradationMesh::lower(std::uint32_t v, double to) {
@@ -60,6 +82,41 @@ Result<MeshField> GradationMesh::limit(const SizeFunction& size, std::uint64_t h
   if (auto error = limit_slopes(size_.gradation, mesh_, context)) return tl::unexpected(*error);
   for (double& value : mesh_.values) value = std::min(value, SizeFunction::kUnreachedEdge);
   return MeshField::make(std::move(mesh_), "size.gradation", context);
+}
+
+// How long edges should be, as a share of what the gradation across land makes them. Above a
+// gradation of 0.8, the mesh would have too many triangles.
+double share_of_edges(double gradation) {
+  return std::clamp(kResolution / gradation, 0.1, 1.5);
+}
+
+}  // namespace
+
+Result<MeshField> limit_within(const MeshRequest& request, const Domain& domain,
+                               const Domain& ground, const Box& box, const SizeFunction& across,
+                               const SizeFunction& size, const ExecutionContext& context) {
+  const double share = share_of_edges(request.size.gradation);
+  MeshRequest finer;
+  finer.min_edge = share * request.min_edge;
+  finer.leaf_triangles = request.leaf_triangles;
+  finer.sweeps = 0;
+  finer.allow_unrefined = true;
+  Budget budget = context.budget();
+  budget.max_triangles = std::min(budget.max_triangles, budget.triangle_limit);
+  ExecutionContext inside(context, budget);
+  const ScaledSize scaled(across, share * share);
+  const auto map = inside.compute([&] { return SizeMap::build(scaled, ground, inside); });
+  if (!map) return tl::unexpected(map.error());
+  GradationMesh mesh(request);
+  StageClock clock;
+  Summary summary;
+  summary.box = box;
+  const PeriodicSides none;
+  const Refinable ready{finer, domain, ground, box, scaled, &*map, scaled.bytes(), none, nullptr};
+  if (auto error = refine(ready, mesh, inside, clock, summary))
+    return tl::unexpected(std::move(*error));
+  return inside.compute(
+      [&] { return std::move(mesh).limit(size, domain.bytes() + across.bytes(), context); });
 }
 
 }  // namespace weft

@@ -26,7 +26,7 @@ import sys
 
 LAYERS = {
     "engine": ["base", "domain", "size", "refine", "parallel", "emit", "layers", "leaf_run.*", "mesh_run.*",
-               "gradation_mesh.*", "engine.*", "estimate.*", "options.*", "run.*", "weft.*", "c"],
+               "refinement.*", "gradation_mesh.*", "engine.*", "estimate.*", "options.*", "run.*", "weft.*", "c"],
     "server": ["version.*", "stop_events.*", "store", "wire", "run", "observe", "net", "admission",
                "services", "front", "console", "http", "jobs", "mesh", "server_options.*", "server_info.*",
                "server.*", "options.*", "main.*"],

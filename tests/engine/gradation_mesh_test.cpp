@@ -62,17 +62,11 @@ struct Within {
     context.set_arena(arena);
     domain = *triangulate(request.pslg, context);
     size.emplace(*make_size(request.size, request.pslg, domain, context));
-    GradationMesh mesh(request);
-    ExecutionContext inside(context, Budget{});
-    MeshRequest finer = request;
-    const double share = GradationMesh::share_of_edges(request.size.gradation);
-    if (auto* const edge = std::get_if<std::string>(&finer.size.value))
-      *edge = std::to_string(share) + "*(" + *edge + ")";
-    finer.size.gradation *= share;
-    EXPECT_TRUE(generate_mesh(finer, mesh, inside).has_value());
-    unlimited = size->limited_across_land();
+    const SizeFunction* const unlimited = size->limited_across_land();
     if (unlimited == nullptr) return;
-    auto limit = std::move(mesh).limit(*unlimited, 0, context);
+    Box box;
+    for (const Point p : domain.vertices) box.add(p);
+    auto limit = limit_within(request, domain, domain, box, size->function(), *unlimited, context);
     EXPECT_TRUE(limit.has_value());
     size->add(std::make_unique<WithinSize>(size->function(), *unlimited, std::move(*limit)));
   }
@@ -84,7 +78,6 @@ struct Within {
   ExecutionContext context;
   Domain domain;
   std::optional<Size> size;
-  const SizeFunction* unlimited = nullptr;
 };
 
 SizeSpec graded(const std::string& edge, double gradation) {
