@@ -28,7 +28,7 @@ LAYERS = {
     "engine": ["base", "domain", "size", "refine", "parallel", "emit", "layers", "leaf_run.*", "mesh_run.*",
                "refinement.*", "gradation_mesh.*", "engine.*", "estimate.*", "options.*", "run.*", "weft.*", "c"],
     "server": ["version.*", "stop_events.*", "store", "wire", "run", "observe", "net", "admission",
-               "services", "front", "console", "http", "jobs", "mesh", "server_options.*", "server_info.*",
+               "services", "front", "callbacks", "console", "http", "jobs", "mesh", "server_options.*", "server_info.*",
                "server.*", "options.*", "main.*"],
     "files": ["base", "bytes", "formats", "geo", "lint", "message"],
     "client": ["base", "call", "drawing", "report", "batch", "lint", "commands", "cli", "main.*"],

@@ -15,25 +15,19 @@
 #pragma once
 
 #include <array>
-#include <chrono>
-#include <condition_variable>
-#include <filesystem>
-#include <functional>
-#include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "server/observe/log.h"
+#include "server/net/watched_file.h"
 
 namespace weft::server {
 
 class TokenTable {
  public:
+  static constexpr const char* kHolds = "tokens";
   // The error names the line, and never repeats a token. A table without tokens is an error.
   static tl::expected<TokenTable, std::string> parse(std::string_view text);
 
@@ -51,49 +45,6 @@ class TokenTable {
   std::vector<Entry> entries_;
 };
 
-// The table in a file, read again once per second. While the file is missing, empty or wrong, the
-// table stays as it was, and the log says so once. It warns of a file that others may read or
-// write. Thread-safe.
-class TokenFile {
- public:
-  static tl::expected<std::unique_ptr<TokenFile>, std::string> open(
-      const std::filesystem::path& path, Logger log,
-      std::chrono::milliseconds between_looks = std::chrono::seconds(1));
-  ~TokenFile();
-  TokenFile(const TokenFile&) = delete;
-  TokenFile& operator=(const TokenFile&) = delete;
-
-  std::shared_ptr<const TokenTable> table() const;
-
-  // Reads the file now, on another thread.
-  void reload();
-
-  // `listener` is called, on another thread, after there is another table. Once this returns, no
-  // call of an earlier listener is at work.
-  void on_change(std::function<void()> listener);
-
- private:
-  TokenFile(std::filesystem::path path, Logger log, std::chrono::milliseconds between_looks);
-  // Returns nullopt if the file has not changed.
-  tl::expected<std::optional<TokenTable>, std::string> read();
-  void warn_if_exposed();
-  void look();
-  void look_until_stopped();
-
-  const std::filesystem::path path_;
-  const Logger log_;
-  const std::chrono::milliseconds between_looks_;
-  std::string last_seen_;      // digest of the file's contents; used only by the watching thread
-  unsigned seen_mode_ = 0600;  // the file's; the same
-
-  mutable std::mutex mutex_;  // guards the three below
-  std::shared_ptr<const TokenTable> table_;
-  bool stopping_ = false;
-  bool look_now_ = false;
-  std::condition_variable changed_;
-  std::mutex calling_;  // guards the one below
-  std::function<void()> listener_;
-  std::thread watcher_;
-};
+using TokenFile = WatchedFile<TokenTable>;
 
 }  // namespace weft::server
