@@ -240,6 +240,11 @@ JobService::Answer<v1::SubmitJobResponse> JobService::submit(const Caller& calle
           Failure{Reason::kQueueFull, "",
                   fmt::format("{} jobs of yours have not ended yet, which is the limit",
                               options_.max_open_of_client)});
+    case SubmitOutcome::kCallbacksFull:
+      return tl::unexpected(
+          Failure{Reason::kQueueFull, "notify",
+                  fmt::format("{} callbacks of yours are pending, which is the limit",
+                              options_.max_open_of_client)});
     case SubmitOutcome::kAccepted:
       submitted->job.from_store ? metrics_.cache_hit() : metrics_.cache_missed();
       metrics_.job_became(state_name(submitted->job.state));

@@ -14,6 +14,9 @@
 // `key` names a mesh: 32 bytes, a digest of the request and the engine version, and of the owner if
 // clients share nothing. Jobs of the same key share a task, and find the mesh once it is made.
 //
+// A job may have a callback, which tells of its end. Once the job has ended, the callback is
+// pending until it is settled; whoever claims it has it for a lease, and then it is due again.
+//
 // Laws, whatever fails and whenever:
 //   1. A job whose submission has returned exists, and reaches exactly one final state.
 //   2. A task is held by at most one claim. A claim is a lease: if it is not renewed in time,
@@ -26,6 +29,8 @@
 //   4. No transaction is open between two calls.
 //   5. Tasks are claimed in the order in which they were made, whatever the clock says. If it was
 //      set back, `reap` shortens leases and pauses that could not have been given now.
+//   6. The callback of a job that ended is claimed again until it is settled as delivered or
+//      failed, or its owner removes the job. At most one claim of it is valid, as of a task.
 //
 // Errors: see StoreError. Every function may block on the disk or the network, so none may be
 // called on a thread of gRPC. Thread-safety: every function may be called from any thread.
@@ -59,6 +64,17 @@ constexpr bool is_final(JobState state) {
 
 using WallTime = std::chrono::system_clock::time_point;  // stored to the microsecond
 
+// What became of a callback. Its numbers are stored.
+enum class CallbackState { kNone, kPending, kClaimed, kDelivered, kFailed };
+
+struct Callback {
+  std::string url{};    // empty: none
+  std::string place{};  // HOST:PORT of the URL, by which claims are kept from a place
+  CallbackState state = CallbackState::kNone;
+  std::uint32_t attempts = 0;
+  std::string error{};  // of the last attempt; empty if it is delivered
+};
+
 struct JobRecord {
   std::string id;          // given by the store: unique for ever, 26 characters, sorts by time
   std::string owner;       // empty if callers are not told apart
@@ -75,6 +91,7 @@ struct JobRecord {
   bool from_store = false;
   std::optional<std::int64_t> task;  // that it waits for; nullopt once it has ended
   std::string brief;                 // of its mesh; empty unless succeeded, and the mesh is kept
+  Callback callback;                 // without its place
 };
 
 // What the work on a task may use.
@@ -99,14 +116,19 @@ struct Submission {
   // jobs of this owner that have not ended. Whoever finds a mesh needs no room.
   std::uint64_t max_queued = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t max_open_of_owner = std::numeric_limits<std::uint64_t>::max();
+  // What is told of its end: a URL and its place. Maximum callbacks of this owner that are neither
+  // delivered nor failed; a job without one is accepted nonetheless.
+  Callback callback{};
+  std::uint64_t max_callbacks_of_owner = std::numeric_limits<std::uint64_t>::max();
 };
 
 enum class SubmitOutcome {
-  kAccepted,   // a new job
-  kFound,      // request_id was used before, for the same key
-  kConflict,   // request_id was used before, for another key: nothing was changed
-  kQueueFull,  // max_queued is reached: nothing was changed
-  kOwnerFull,  // max_open_of_owner is reached: nothing was changed
+  kAccepted,       // a new job
+  kFound,          // request_id was used before, for the same key
+  kConflict,       // request_id was used before, for another key: nothing was changed
+  kQueueFull,      // max_queued is reached: nothing was changed
+  kOwnerFull,      // max_open_of_owner is reached: nothing was changed
+  kCallbacksFull,  // max_callbacks_of_owner is reached: nothing was changed
 };
 
 struct Submitted {
@@ -164,6 +186,9 @@ struct RetryPolicy {
 };
 
 inline constexpr std::chrono::milliseconds kLongestDelay{60'000};
+
+// A callback is sent no later than this after an earlier attempt.
+inline constexpr std::chrono::milliseconds kLongestCallbackDelay = std::chrono::hours(1);
 
 // The time from the end of this attempt to the next.
 constexpr std::chrono::milliseconds delay_after(const RetryPolicy& policy, std::uint32_t attempt) {
@@ -257,6 +282,19 @@ class JobStore {
   // false, the attempt does not count: the server stops, and the task is not at fault.
   virtual StoreResult<Held> release(const ClaimRef& claim, std::chrono::milliseconds delay,
                                     bool counts) = 0;
+
+  // --- for callbacks ---
+  // Claims a pending callback that is due, of a job that has ended, for at most
+  // kLongestCallbackDelay: the one that is due for longest, but none of these owners and none to
+  // these places. nullopt if there is none.
+  virtual StoreResult<std::optional<JobRecord>> claim_callback(
+      std::chrono::milliseconds lease, const std::vector<std::string>& except_owners,
+      const std::vector<std::string>& except_places) = 0;
+  // Settles the callback of a job as `claim_callback` returned it, as delivered or failed, with the
+  // error in it; if it is pending, it is due again after `delay`, at most kLongestCallbackDelay.
+  virtual StoreResult<Held> settle_callback(const JobRecord& claimed, CallbackState state,
+                                            const std::string& error,
+                                            std::chrono::milliseconds delay) = 0;
 
   // --- for the house-keeping of any server, at any time ---
   virtual StoreResult<Reaped> reap(const RetryPolicy& policy) = 0;

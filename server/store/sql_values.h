@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts the server's types to SQL and back. Both stores return a job as the same fifteen
-// columns, in the order in which `read_job` reads them.
+// Converts the server's types to SQL and back. Both stores return a job as the same columns, those
+// of a view, in the order in which `read_job` reads them.
 #pragma once
 
 #include <algorithm>
@@ -84,6 +84,10 @@ JobRecord read_job(const Rows& rows) {
   job.error = rows.bytes(12);
   if (!rows.null(13)) job.task = rows.integer(13);
   job.brief = rows.bytes(14);
+  job.callback.url = rows.bytes(15);
+  job.callback.state = static_cast<CallbackState>(rows.integer(16));
+  job.callback.attempts = static_cast<std::uint32_t>(rows.integer(17));
+  job.callback.error = rows.bytes(18);
   return job;
 }
 

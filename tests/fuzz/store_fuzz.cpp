@@ -104,7 +104,7 @@ class HostileStore {
     const std::size_t choice = bytes.byte();
     if (choice % 8 < 5) {
       const std::size_t which = choice / 8;
-      if (column == "id" && sqlite3_bind_parameter_count(statement) == 13)  // of a job
+      if (column == "id" && sqlite3_bind_parameter_count(statement) == 19)  // of a job
         return bind_text(statement, at, kIds[which % 3]);
       if (column == "owner") return bind_text(statement, at, kOwners[which % 2]);
       if (column == "key" || column == "sha256") return bind_blob(statement, at, kKeys[which % 2]);
@@ -186,6 +186,11 @@ class Caller {
                           {.summary = "s", .brief = "b", .chunks = {{std::string(kKeys[1]), 5}}});
       (void)store_.fail(ref, "error");
       (void)store_.release(ref, milliseconds(10), true);
+    }
+    const auto callback = store_.claim_callback(milliseconds(1000), {"eve"}, {"eve:80"});
+    if (callback && *callback) {
+      tell(**callback);
+      (void)store_.settle_callback(**callback, CallbackState::kPending, "error", milliseconds(10));
     }
     (void)store_.reap({});
     (void)store_.cancel("ann", std::string(kIds[0]));

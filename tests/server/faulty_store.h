@@ -75,6 +75,19 @@ class FaultyStore final : public JobStore {
                             bool counts) override {
     return unless<Held>("release", [&] { return store_->release(claim, delay, counts); });
   }
+  StoreResult<std::optional<JobRecord>> claim_callback(
+      std::chrono::milliseconds lease, const std::vector<std::string>& except_owners,
+      const std::vector<std::string>& except_places) override {
+    return unless<std::optional<JobRecord>>("claim_callback", [&] {
+      return store_->claim_callback(lease, except_owners, except_places);
+    });
+  }
+  StoreResult<Held> settle_callback(const JobRecord& claimed, CallbackState state,
+                                    const std::string& error,
+                                    std::chrono::milliseconds delay) override {
+    return unless<Held>("settle_callback",
+                        [&] { return store_->settle_callback(claimed, state, error, delay); });
+  }
   StoreResult<Reaped> reap(const RetryPolicy& policy) override {
     return unless<Reaped>("reap", [&] { return store_->reap(policy); });
   }

@@ -15,23 +15,12 @@ namespace {
 
 constexpr std::int64_t kQueueLock = 0x77656674'0002;
 
-constexpr const char* kJobById =
-    "SELECT id, owner, request_id, key, state, created, started, ended, attempts, from_store, "
-    "worker, progress, error, task, brief FROM weft_job_now WHERE owner = $1 AND id = $2";
+constexpr const char* kJobById = "SELECT * FROM weft_job_now WHERE owner = $1 AND id = $2";
 constexpr const char* kJobByRequestId =
-    "SELECT id, owner, request_id, key, state, created, started, ended, attempts, from_store, "
-    "worker, progress, error, task, brief FROM weft_job_now WHERE owner = $1 AND request_id = $2";
+    "SELECT * FROM weft_job_now WHERE owner = $1 AND request_id = $2";
 constexpr const char* kJobsOfOwner =
-    "SELECT id, owner, request_id, key, state, created, started, ended, attempts, from_store, "
-    "worker, progress, error, task, brief FROM weft_job_now "
+    "SELECT * FROM weft_job_now "
     "WHERE owner = $1 AND id < $2 AND (1 << state::int) & $3 <> 0 ORDER BY id DESC LIMIT $4";
-
-std::optional<JobRecord> find_job(Transaction& transaction, const std::string& owner,
-                                  const std::string& id) {
-  Rows rows = transaction.run(kJobById, owner, id);
-  if (!rows.next()) return std::nullopt;
-  return read_job(rows);
-}
 
 // A task that a job may join. It does not end before the transaction does.
 std::optional<std::int64_t> find_shared_task(Transaction& transaction,
@@ -78,7 +67,21 @@ std::uint64_t count_open(Transaction& transaction, const std::string& owner) {
   return rows.next() ? to_unsigned(rows.integer(0)) : 0;
 }
 
+// The owner's callbacks that are neither delivered nor failed.
+std::uint64_t count_callbacks(Transaction& transaction, const std::string& owner) {
+  Rows rows = transaction.run(
+      "SELECT count(*) FROM weft_job WHERE owner = $1 AND callback_due IS NOT NULL", owner);
+  return rows.next() ? to_unsigned(rows.integer(0)) : 0;
+}
+
 }  // namespace
+
+std::optional<JobRecord> find_job(Transaction& transaction, const std::string& owner,
+                                  const std::string& id) {
+  Rows rows = transaction.run(kJobById, owner, id);
+  if (!rows.next()) return std::nullopt;
+  return read_job(rows);
+}
 
 void settle_jobs(Transaction& transaction, std::int64_t task, const std::string& job,
                  JobState state, const std::string& error) {
@@ -129,9 +132,12 @@ Submitted PostgresJobs::submit_in(Transaction& transaction, const Submission& su
     return task || kept;
   };
   const bool found = find();
-  // Not locked: submissions that come at once may exceed this limit.
+  // Not locked: submissions that come at once may exceed these limits.
   if (!kept && count_open(transaction, submission.owner) >= submission.max_open_of_owner)
     return {SubmitOutcome::kOwnerFull, {}};
+  if (!submission.callback.url.empty() &&
+      count_callbacks(transaction, submission.owner) >= submission.max_callbacks_of_owner)
+    return {SubmitOutcome::kCallbacksFull, {}};
   if (!found) {
     // One submission at a time, so that the tasks are counted correctly, and none is added twice.
     transaction.run("SELECT pg_advisory_xact_lock($1)", kQueueLock);
@@ -166,10 +172,14 @@ void PostgresJobs::insert_job(Transaction& transaction, const Submission& submis
   std::optional<std::int64_t> state;
   if (!task) state = static_cast<int>(JobState::kSucceeded);
   transaction.change(
-      "INSERT INTO weft_job (id, owner, request_id, key, task, state, created, ended, from_store) "
-      "SELECT $1, $2, $3, $4, $5, $6, now, CASE WHEN $6 IS NOT NULL THEN now END, $6 IS NOT NULL "
-      "FROM clock_timestamp() AS now",
-      id, submission.owner, request_id, Blob{submission.key}, task, state);
+      "INSERT INTO weft_job (id, owner, request_id, key, task, state, created, ended, from_store, "
+      "callback_url, callback_place, callback_state, callback_due) "
+      "SELECT $1, $2, $3, $4, $5, $6, now, CASE WHEN $6 IS NOT NULL THEN now END, $6 IS NOT NULL, "
+      "$7, $8, $9, CASE WHEN $7 <> '' THEN now END FROM clock_timestamp() AS now",
+      id, submission.owner, request_id, Blob{submission.key}, task, state, submission.callback.url,
+      submission.callback.place,
+      static_cast<int>(submission.callback.url.empty() ? CallbackState::kNone
+                                                       : CallbackState::kPending));
 }
 
 StoreResult<std::optional<JobRecord>> PostgresJobs::get(const std::string& owner,

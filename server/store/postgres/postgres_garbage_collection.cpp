@@ -40,6 +40,11 @@ void shorten_times(Transaction& transaction, std::chrono::microseconds lease) {
       "0 "
       "AND due > now() + $1 * interval '1 microsecond' FOR UPDATE SKIP LOCKED)",
       to_micros(kLongestDelay));
+  transaction.change(
+      "UPDATE weft_job SET callback_due = now() + $1 * interval '1 microsecond' WHERE id IN "
+      "(SELECT id FROM weft_job WHERE callback_due > now() + $1 * interval '1 microsecond' "
+      "AND ended IS NOT NULL FOR UPDATE SKIP LOCKED)",
+      to_micros(kLongestCallbackDelay));
 }
 
 // Whether the oldest or the youngest task was made a second later than now, or more.
@@ -60,7 +65,8 @@ bool collects(Transaction& transaction) {
 std::uint64_t delete_jobs(Transaction& transaction, std::int64_t age) {
   return to_unsigned(
       transaction.change("DELETE FROM weft_job WHERE id IN (SELECT id FROM weft_job "
-                         "WHERE ended <= now() - $1 * interval '1 microsecond' LIMIT $2)",
+                         "WHERE ended <= now() - $1 * interval '1 microsecond' "
+                         "AND callback_due IS NULL LIMIT $2)",
                          age, kJobsAtOnce));
 }
 
@@ -70,8 +76,8 @@ std::uint64_t delete_surplus_jobs(Transaction& transaction, std::int64_t most) {
   std::int64_t surplus = 0;
   {
     Rows rows = transaction.run(
-        "SELECT owner, count(*) - $1 FROM weft_job WHERE ended IS NOT NULL GROUP BY owner "
-        "HAVING count(*) > $1 LIMIT 1",
+        "SELECT owner, count(*) - $1 FROM weft_job WHERE ended IS NOT NULL AND callback_due IS "
+        "NULL GROUP BY owner HAVING count(*) > $1 LIMIT 1",
         most);
     if (!rows.next()) return 0;
     owner = rows.bytes(0);
@@ -79,7 +85,7 @@ std::uint64_t delete_surplus_jobs(Transaction& transaction, std::int64_t most) {
   }
   return to_unsigned(transaction.change(
       "DELETE FROM weft_job WHERE id IN (SELECT id FROM weft_job WHERE owner = $1 "
-      "AND ended IS NOT NULL ORDER BY id LIMIT $2)",
+      "AND ended IS NOT NULL AND callback_due IS NULL ORDER BY id LIMIT $2)",
       owner, std::min<std::int64_t>(surplus, kJobsAtOnce)));
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The functions of the PostgreSQL store: for clients in postgres_clients.cpp, for workers in
-// postgres_workers.cpp, for the house-keeping in postgres_garbage_collection.cpp.
+// postgres_workers.cpp, for callbacks in postgres_callbacks.cpp, for the house-keeping in
+// postgres_garbage_collection.cpp.
 //
 // Locks are taken in this order, so that no deadlock can arise: a request_id
 // (advisory), the queue (advisory), a task, its jobs, a mesh, chunks. A job joins a task under
@@ -47,6 +48,13 @@ class PostgresJobs final : public JobStore {
   StoreResult<Held> release(const ClaimRef& claim, std::chrono::milliseconds delay,
                             bool counts) override;
 
+  StoreResult<std::optional<JobRecord>> claim_callback(
+      std::chrono::milliseconds lease, const std::vector<std::string>& except_owners,
+      const std::vector<std::string>& except_places) override;
+  StoreResult<Held> settle_callback(const JobRecord& claimed, CallbackState state,
+                                    const std::string& error,
+                                    std::chrono::milliseconds delay) override;
+
   StoreResult<Reaped> reap(const RetryPolicy& policy) override;
   StoreResult<Collected> collect(const KeepPolicy& policy) override;
   StoreResult<StoreStats> stats() override;
@@ -62,6 +70,10 @@ class PostgresJobs final : public JobStore {
   const std::unique_ptr<PostgresCore> core_;
   JobIds ids_;
 };
+
+// Returns the job `id`; nullopt if the owner has no such job.
+std::optional<JobRecord> find_job(postgres::Transaction& transaction, const std::string& owner,
+                                  const std::string& id);
 
 // Ends the jobs of a task, or only `job` if it is not empty; the task itself, which must be locked,
 // stays.

@@ -151,8 +151,41 @@ ALTER TABLE weft_mesh ADD COLUMN owner text NOT NULL DEFAULT '';
 CREATE INDEX weft_job_open ON weft_job (owner) WHERE ended IS NULL;
 )sql";
 
+// Servers of version 4 that are still running end jobs, whose callbacks are then sent, but may
+// collect them before.
+constexpr const char* kVersion5 = R"sql(
+ALTER TABLE weft_job
+  ADD COLUMN callback_url      text        NOT NULL DEFAULT '',
+  ADD COLUMN callback_place    text        NOT NULL DEFAULT '',
+  ADD COLUMN callback_state    bigint      NOT NULL DEFAULT 0,
+  ADD COLUMN callback_attempts bigint      NOT NULL DEFAULT 0,
+  ADD COLUMN callback_error    text        NOT NULL DEFAULT '',
+  ADD COLUMN callback_due      timestamptz;
+CREATE INDEX weft_job_callback ON weft_job (callback_due)
+  WHERE callback_due IS NOT NULL AND ended IS NOT NULL;
+CREATE INDEX weft_job_callback_owner ON weft_job (owner) WHERE callback_due IS NOT NULL;
+
+CREATE OR REPLACE VIEW weft_job_now AS
+SELECT job.id, job.owner, job.request_id, job.key,
+       coalesce(job.state, task.state) AS state,
+       weft_micros(job.created) AS created,
+       weft_micros(CASE WHEN task.started IS NULL THEN job.started
+                        ELSE greatest(job.created, task.started) END) AS started,
+       weft_micros(job.ended) AS ended,
+       coalesce(task.tries, job.attempts) AS attempts,
+       job.from_store,
+       coalesce(task.worker, job.worker) AS worker,
+       coalesce(task.progress, '') AS progress,
+       job.error,
+       job.task,
+       coalesce(CASE WHEN job.state = 2 THEN
+                (SELECT brief FROM weft_mesh AS mesh WHERE mesh.key = job.key) END, '') AS brief,
+       job.callback_url, job.callback_state, job.callback_attempts, job.callback_error
+FROM weft_job AS job LEFT JOIN weft_task AS task ON task.id = job.task;
+)sql";
+
 // The n-th brings version n to version n + 1.
-constexpr std::array kMigrations{kVersion1, kVersion2, kVersion3, kVersion4};
+constexpr std::array kMigrations{kVersion1, kVersion2, kVersion3, kVersion4, kVersion5};
 
 // A number that other programs are unlikely to lock.
 constexpr std::int64_t kMigrationLock = 0x77656674'0001;

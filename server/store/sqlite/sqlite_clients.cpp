@@ -11,17 +11,12 @@ using sqlite::Transaction;
 
 namespace {
 
-constexpr std::string_view kJobById =
-    "SELECT id, owner, request_id, key, state, created, started, ended, attempts, from_store, "
-    "worker, progress, error, task, brief FROM job_now WHERE owner = ?1 AND id = ?2";
+constexpr std::string_view kJobById = "SELECT * FROM job_now WHERE owner = ?1 AND id = ?2";
 constexpr std::string_view kJobByRequestId =
-    "SELECT id, owner, request_id, key, state, created, started, ended, attempts, from_store, "
-    "worker, progress, error, task, brief FROM job_now WHERE owner = ?1 AND request_id = ?2";
+    "SELECT * FROM job_now WHERE owner = ?1 AND request_id = ?2";
 constexpr std::string_view kJobsOfOwner =
-    "SELECT id, owner, request_id, key, state, created, started, ended, attempts, from_store, "
-    "worker, progress, error, task, brief FROM job_now WHERE owner = ?1 AND id < ?2 AND (1 << "
-    "state) & ?3 "
-    "ORDER BY id DESC LIMIT ?4";
+    "SELECT * FROM job_now WHERE owner = ?1 AND id < ?2 AND (1 << state) & ?3 ORDER BY id DESC "
+    "LIMIT ?4";
 
 // The tasks that wait.
 std::uint64_t count_queued(Transaction& transaction) {
@@ -32,6 +27,13 @@ std::uint64_t count_queued(Transaction& transaction) {
 // The owner's jobs that have not ended.
 std::uint64_t count_open(Transaction& transaction, const std::string& owner) {
   Rows rows = transaction.run("SELECT count(*) FROM job WHERE owner = ?1 AND ended IS NULL", owner);
+  return rows.next() ? to_unsigned(rows.integer(0)) : 0;
+}
+
+// The owner's callbacks that are neither delivered nor failed.
+std::uint64_t count_callbacks(Transaction& transaction, const std::string& owner) {
+  Rows rows = transaction.run(
+      "SELECT count(*) FROM job WHERE owner = ?1 AND callback_due IS NOT NULL", owner);
   return rows.next() ? to_unsigned(rows.integer(0)) : 0;
 }
 
@@ -95,6 +97,10 @@ Submitted SqliteJobs::submit_in(Transaction& transaction, const Submission& subm
   }
   if (!ended && count_open(transaction, submission.owner) >= submission.max_open_of_owner)
     return {SubmitOutcome::kOwnerFull, {}};
+  const bool calls_back = !submission.callback.url.empty();
+  if (calls_back &&
+      count_callbacks(transaction, submission.owner) >= submission.max_callbacks_of_owner)
+    return {SubmitOutcome::kCallbacksFull, {}};
   if (!task && !ended) {
     if (count_queued(transaction) >= submission.max_queued) return {SubmitOutcome::kQueueFull, {}};
     // One with a smaller budget is shared no more.
@@ -110,9 +116,13 @@ Submitted SqliteJobs::submit_in(Transaction& transaction, const Submission& subm
                        Blob{submission.request});
   }
   transaction.change(
-      "INSERT INTO job (id, owner, request_id, key, task, state, created, ended, from_store) "
-      "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)",
-      fresh.id, submission.owner, request_id, key, task, state, now, ended, ended.has_value());
+      "INSERT INTO job (id, owner, request_id, key, task, state, created, ended, from_store, "
+      "callback_url, callback_place, callback_state, callback_due) "
+      "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13)",
+      fresh.id, submission.owner, request_id, key, task, state, now, ended, ended.has_value(),
+      submission.callback.url, submission.callback.place,
+      static_cast<int>(calls_back ? CallbackState::kPending : CallbackState::kNone),
+      calls_back ? std::optional(now) : std::nullopt);
   return {SubmitOutcome::kAccepted,
           find_job(transaction, submission.owner, fresh.id).value_or(JobRecord{})};
 }

@@ -34,6 +34,9 @@ void shorten_times(Transaction& transaction, std::int64_t now, std::chrono::micr
                      now + to_micros(lease));
   transaction.change("UPDATE task SET due = 0 WHERE state = 0 AND due > ?1",
                      now + to_micros(kLongestDelay));
+  transaction.change(
+      "UPDATE job SET callback_due = ?1 WHERE callback_due > ?1 AND ended IS NOT NULL",
+      now + to_micros(kLongestCallbackDelay));
 }
 
 // Whether the oldest or the youngest task was made a second later than now, or more.
@@ -48,8 +51,9 @@ bool has_future_tasks(Transaction& transaction, std::int64_t now) {
 
 std::uint64_t delete_jobs(Transaction& transaction, std::int64_t ended) {
   return to_unsigned(transaction.change(
-      "DELETE FROM job WHERE id IN (SELECT id FROM job WHERE ended <= ?1 LIMIT ?2)", ended,
-      kJobsAtOnce));
+      "DELETE FROM job WHERE id IN (SELECT id FROM job WHERE ended <= ?1 AND callback_due IS NULL "
+      "LIMIT ?2)",
+      ended, kJobsAtOnce));
 }
 
 // Deletes some of the oldest ended jobs of an owner who has too many.
@@ -58,8 +62,8 @@ std::uint64_t delete_surplus_jobs(Transaction& transaction, std::int64_t most) {
   std::int64_t surplus = 0;
   {
     Rows rows = transaction.run(
-        "SELECT owner, count(*) - ?1 FROM job WHERE ended IS NOT NULL GROUP BY owner "
-        "HAVING count(*) > ?1 LIMIT 1",
+        "SELECT owner, count(*) - ?1 FROM job WHERE ended IS NOT NULL AND callback_due IS NULL "
+        "GROUP BY owner HAVING count(*) > ?1 LIMIT 1",
         most);
     if (!rows.next()) return 0;
     owner = rows.bytes(0);
@@ -67,7 +71,7 @@ std::uint64_t delete_surplus_jobs(Transaction& transaction, std::int64_t most) {
   }
   return to_unsigned(transaction.change(
       "DELETE FROM job WHERE id IN (SELECT id FROM job WHERE owner = ?1 AND ended IS NOT NULL "
-      "ORDER BY id LIMIT ?2)",
+      "AND callback_due IS NULL ORDER BY id LIMIT ?2)",
       owner, std::min<std::int64_t>(surplus, kJobsAtOnce)));
 }
 

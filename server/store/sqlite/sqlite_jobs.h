@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The functions of the SQLite store: for clients in sqlite_clients.cpp, for workers in
-// sqlite_workers.cpp, for the house-keeping in sqlite_garbage_collection.cpp.
+// sqlite_workers.cpp, for callbacks in sqlite_callbacks.cpp, for the house-keeping in
+// sqlite_garbage_collection.cpp.
 #pragma once
 
 #include <memory>
@@ -42,6 +43,13 @@ class SqliteJobs final : public JobStore {
   StoreResult<Held> fail(const ClaimRef& claim, const std::string& error) override;
   StoreResult<Held> release(const ClaimRef& claim, std::chrono::milliseconds delay,
                             bool counts) override;
+
+  StoreResult<std::optional<JobRecord>> claim_callback(
+      std::chrono::milliseconds lease, const std::vector<std::string>& except_owners,
+      const std::vector<std::string>& except_places) override;
+  StoreResult<Held> settle_callback(const JobRecord& claimed, CallbackState state,
+                                    const std::string& error,
+                                    std::chrono::milliseconds delay) override;
 
   StoreResult<Reaped> reap(const RetryPolicy& policy) override;
   StoreResult<Collected> collect(const KeepPolicy& policy) override;

@@ -157,8 +157,39 @@ ALTER TABLE mesh ADD COLUMN owner TEXT NOT NULL DEFAULT '';  -- of the job it wa
 CREATE INDEX job_open ON job (owner) WHERE ended IS NULL;
 )sql";
 
+// Adds callbacks. `callback_due` is when a callback may be claimed; it is NULL unless the callback
+// is pending or claimed, and its job counts only once it has ended.
+constexpr const char* kVersion5 = R"sql(
+ALTER TABLE job ADD COLUMN callback_url      TEXT    NOT NULL DEFAULT '';
+ALTER TABLE job ADD COLUMN callback_place    TEXT    NOT NULL DEFAULT '';
+ALTER TABLE job ADD COLUMN callback_state    INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE job ADD COLUMN callback_attempts INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE job ADD COLUMN callback_error    TEXT    NOT NULL DEFAULT '';
+ALTER TABLE job ADD COLUMN callback_due      INTEGER;
+CREATE INDEX job_callback ON job (callback_due) WHERE callback_due IS NOT NULL AND ended IS NOT NULL;
+CREATE INDEX job_callback_owner ON job (owner) WHERE callback_due IS NOT NULL;
+
+DROP VIEW job_now;
+CREATE VIEW job_now AS
+SELECT job.id, job.owner, job.request_id, job.key,
+       coalesce(job.state, task.state) AS state,
+       job.created,
+       CASE WHEN task.id IS NULL THEN job.started ELSE max(job.created, task.started) END AS started,
+       job.ended,
+       coalesce(task.tries, job.attempts) AS attempts,
+       job.from_store,
+       coalesce(task.worker, job.worker) AS worker,
+       coalesce(task.progress, x'') AS progress,
+       job.error,
+       job.task,
+       coalesce(CASE WHEN job.state = 2 THEN (SELECT brief FROM mesh WHERE mesh.key = job.key) END,
+                x'') AS brief,
+       job.callback_url, job.callback_state, job.callback_attempts, job.callback_error
+FROM job LEFT JOIN task ON task.id = job.task;
+)sql";
+
 // The n-th brings version n to version n + 1.
-constexpr std::array kMigrations{kVersion1, kVersion2, kVersion3, kVersion4};
+constexpr std::array kMigrations{kVersion1, kVersion2, kVersion3, kVersion4, kVersion5};
 
 }  // namespace
 

@@ -14,6 +14,10 @@ StoreResult<std::unique_ptr<JobStore>> SqliteStore::open(Options options) {
   // Leases belong to the server that ran before this one and is gone, so nobody waits for their
   // end.
   const auto expired = (*core)->write(Durability::kLater, [](sqlite::Transaction& transaction) {
+    transaction.change(
+        "UPDATE job SET callback_due = 0 WHERE callback_due IS NOT NULL AND "
+        "callback_state = ?1",
+        static_cast<int>(CallbackState::kClaimed));
     return transaction.change("UPDATE task SET lease_end = 0 WHERE lease_end IS NOT NULL");
   });
   if (!expired) return tl::unexpected(expired.error());

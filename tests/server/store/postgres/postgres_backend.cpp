@@ -50,7 +50,7 @@ class PostgresBackend final : public Backend {
     const char* columns[4];
   };
   static constexpr Times kTimes[] = {{"weft_task", {"created", "due", "started", "lease_end"}},
-                                     {"weft_job", {"created", "started", "ended", nullptr}},
+                                     {"weft_job", {"created", "started", "ended", "callback_due"}},
                                      {"weft_settled", {"at", nullptr, nullptr, nullptr}},
                                      {"weft_mesh", {"asked", nullptr, nullptr, nullptr}},
                                      {"weft_chunk", {"touched", nullptr, nullptr, nullptr}}};

@@ -40,7 +40,7 @@ TEST_F(PostgresTest, ADatabaseOfANewerVersionIsRefused) {
   const auto opened = PostgresStore::open({.uri = uri_});
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().kind, StoreErrorKind::kBroken);
-  EXPECT_EQ(opened.error().message, "the database is of version 99; this weftd knows none after 4");
+  EXPECT_EQ(opened.error().message, "the database is of version 99; this weftd knows none after 5");
 }
 
 TEST_F(PostgresTest, ADatabaseOfVersion1KeepsItsJobsAndMeshes) {
@@ -55,6 +55,10 @@ TEST_F(PostgresTest, ADatabaseOfVersion1KeepsItsJobsAndMeshes) {
   }
   postgres_server().execute(uri_,
                             "DROP VIEW weft_job_now; DROP INDEX weft_job_open;"
+                            "ALTER TABLE weft_job DROP COLUMN callback_url, "
+                            "DROP COLUMN callback_place, DROP COLUMN callback_state, "
+                            "DROP COLUMN callback_attempts, DROP COLUMN callback_error, "
+                            "DROP COLUMN callback_due;"
                             "ALTER TABLE weft_mesh DROP COLUMN brief, DROP COLUMN owner;"
                             "ALTER TABLE weft_task DROP COLUMN trace, DROP COLUMN max_bytes, "
                             "DROP COLUMN max_micros;"

@@ -68,7 +68,7 @@ TEST_F(SqliteTest, AFileOfANewerVersionIsRefusedAndLeftAlone) {
   const auto opened = open();
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().kind, StoreErrorKind::kBroken);
-  EXPECT_EQ(opened.error().message, file + " is of version 99; this weftd knows none after 4");
+  EXPECT_EQ(opened.error().message, file + " is of version 99; this weftd knows none after 5");
   auto connection = sqlite::Connection::open(file, sqlite::Access::kWrite);
   EXPECT_EQ((*connection)->pragma("PRAGMA user_version"), 99);
 }
@@ -88,6 +88,14 @@ TEST_F(SqliteTest, AFileOfVersion1KeepsItsJobsAndMeshes) {
     ASSERT_TRUE((*connection)
                     ->execute("DROP VIEW job_now;"
                               "DROP INDEX job_open;"
+                              "DROP INDEX job_callback;"
+                              "DROP INDEX job_callback_owner;"
+                              "ALTER TABLE job DROP COLUMN callback_url;"
+                              "ALTER TABLE job DROP COLUMN callback_place;"
+                              "ALTER TABLE job DROP COLUMN callback_state;"
+                              "ALTER TABLE job DROP COLUMN callback_attempts;"
+                              "ALTER TABLE job DROP COLUMN callback_error;"
+                              "ALTER TABLE job DROP COLUMN callback_due;"
                               "ALTER TABLE mesh DROP COLUMN owner;"
                               "UPDATE mesh SET brief = (SELECT bytes FROM mesh_summary);"
                               "DROP TABLE mesh_summary;"
@@ -135,6 +143,18 @@ TEST_F(SqliteTest, LeasesOfTheServerBeforeHaveRunOut) {
     EXPECT_EQ(before->reap({})->requeued, 0U);
   }
   EXPECT_EQ((*open())->reap({})->requeued, 1U);
+}
+
+TEST_F(SqliteTest, ACallbackOfTheServerBeforeIsDueAtOnce) {
+  {
+    const auto before = *open();
+    const auto job = before->submit(
+        {.owner = "ann", .key = key_of("k"), .callback = {.url = "http://a/", .place = "a:80"}});
+    ASSERT_TRUE(*before->cancel("ann", job->job.id));
+    ASSERT_TRUE(*before->claim_callback(minutes(1), {}, {}));
+    ASSERT_FALSE(*before->claim_callback(minutes(1), {}, {}));
+  }
+  EXPECT_TRUE(*(*open())->claim_callback(minutes(1), {}, {}));
 }
 
 TEST_F(SqliteTest, WhatIsCollectedIsGivenBackToTheDisk) {
