@@ -39,7 +39,8 @@ python=(python3-grpcio python3-protobuf python3-numpy python3-pyproj)
 weftd=(
   libgmp10 libgmpxx4ldbl libmpfr6 libtbb12 libsleef3 libspdlog1.10
   libfmt9 libatomic1 libssl3 libsqlite3-0 libpq5 libprometheus-cpp-core1.0 zlib1g
-  libshp2 # the files of --http
+  libshp2         # the files of --http
+  ca-certificates # callbacks by https
 )
 weft=(
   libatomic1 libssl3 libcairo2 fonts-dejavu-core zlib1g liblzma5 libshp2

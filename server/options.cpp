@@ -10,6 +10,7 @@
 #include <iterator>
 #include <limits>
 
+#include "server/callbacks/address_rules.h"
 #include "server/console/request_rules.h"
 #include "server/net/listen.h"
 #include "server/version.h"
@@ -30,9 +31,10 @@ Exit codes:
   128 + n  a second signal n cut the draining short)";
 
 // Flags that have no effect if no jobs are kept.
-constexpr const char* kOfTheStore[] = {"--role",       "--max-queued",   "--max-queued-per-client",
-                                       "--lease",      "--max-attempts", "--keep",
-                                       "--keep-bytes", "--keep-jobs"};
+constexpr const char* kOfTheStore[] = {"--role",        "--max-queued",   "--max-queued-per-client",
+                                       "--lease",       "--max-attempts", "--keep",
+                                       "--keep-bytes",  "--keep-jobs",    "--notify-secrets",
+                                       "--notify-allow"};
 
 std::string environment_name(std::string flag) {
   std::string name = "WEFT_" + flag.substr(2);
@@ -80,6 +82,14 @@ CLI::Validator is_postgres_uri() {
       [](const std::string& text) {
         const bool good = text.starts_with("postgres://") || text.starts_with("postgresql://");
         return good ? std::string() : text + " does not begin with postgres://";
+      },
+      "");
+}
+
+CLI::Validator is_a_network() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        return Network::parse(text) ? std::string() : text + " is no network such as 10.0.0.0/8";
       },
       "");
 }
@@ -154,6 +164,7 @@ struct Given {
   double keep = 7 * 24 * 3600.0;
   double drain = 30;
   std::vector<std::string> roles{"api", "worker"};
+  std::vector<std::string> notify_allow{};
   std::string log_format = "text";
   CLI::Option* share_across_clients = nullptr;
   CLI::Option* client_share = nullptr;
@@ -308,6 +319,19 @@ void add_store(Flags& flags, Options& options, Given& given) {
               "Maximum size of all stored meshes; the least recently used are deleted first");
   flags.count("--keep-jobs", jobs.runner.keep.jobs_of_owner,
               "Maximum ended jobs that are kept per client; the oldest are deleted first");
+  CLI::Option* secrets = flags.value(
+      "--notify-secrets", options.server.callbacks.clients, "FILE",
+      "Send callbacks, which tell a URL of the end of a job. This file has a line NAME SECRET, or "
+      "NAME SECRET URL, for each client whose jobs may have one; * is all others");
+  flags
+      .value("--notify-allow", given.notify_allow, "CIDR",
+             "Network, such as 10.0.0.0/8, that callbacks may go to although it is not of the "
+             "public internet. May be repeated, or separated by commas")
+      ->default_str("")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(is_a_network())
+      ->needs(secrets);
 }
 
 void add_limits(Flags& flags, Options& options, Given& given) {
@@ -426,6 +450,8 @@ void settle(const Given& given, Options& options) {
   if (given.client_share->count() == 0)
     service.client_share = identified || !local ? kDefaultClientShare : 1;
   jobs.runner.keep.share_of_owner = service.client_share;
+  for (const std::string& cidr : given.notify_allow)
+    options.server.callbacks.allowed.push_back(Network::parse(cidr).value());
   jobs.serves = has_role("api");
   jobs.works = has_role("worker");
   jobs.runner.lease =

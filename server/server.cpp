@@ -110,10 +110,12 @@ ServiceOptions with_info(const ServerOptions& options, bool has_store) {
 
 }  // namespace
 
-Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, EngineFn engine,
-               Logger log, std::unique_ptr<JobStore> store)
+Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens,
+               std::unique_ptr<Callbacks> callbacks, EngineFn engine, Logger log,
+               std::unique_ptr<JobStore> store)
     : log_(std::move(log)),
       tokens_(std::move(tokens)),
+      callbacks_(std::move(callbacks)),
       console_secret_(random_secret()),
       connections_(connection_bounds(options), console_secret_),
       authenticator_(tokens_.get(), console_secret_, &connections_),
@@ -145,6 +147,8 @@ Server::Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, 
   jobs.service.patience = options.service.patience;
   jobs.service.client_share = options.service.client_share;
   jobs.runner.worker = options.service.instance;
+  jobs.service.callbacks = callbacks_.get();
+  if (options.service.client_share == 1) jobs.callbacks.of_client = jobs.callbacks.at_once;
   jobs_.emplace(std::move(store), std::move(jobs), admission_, metrics_, engine, pool_, memory_,
                 queue_, log_);
   metrics_.add_queue("jobs", [this] { return jobs_->stats(); });
@@ -170,9 +174,15 @@ tl::expected<std::unique_ptr<Server>, std::string> Server::start(const ServerOpt
     if (!opened) return tl::unexpected(opened.error());
     tokens = std::move(*opened);
   }
+  std::unique_ptr<Callbacks> callbacks;
+  if (!options.callbacks.clients.empty()) {
+    auto opened = Callbacks::open(options.callbacks, log);
+    if (!opened) return tl::unexpected(opened.error());
+    callbacks = std::move(*opened);
+  }
 
-  std::unique_ptr<Server> server(
-      new Server(options, std::move(tokens), std::move(engine), std::move(log), std::move(store)));
+  std::unique_ptr<Server> server(new Server(options, std::move(tokens), std::move(callbacks),
+                                            std::move(engine), std::move(log), std::move(store)));
   if (auto failed = server->listen(options)) return tl::unexpected(std::move(*failed));
   server->health_.set("", true);
   server->health_.set(kMeshServiceName, true);
@@ -286,6 +296,7 @@ std::optional<std::string> Server::start_console(const ServerOptions& options) {
 
 void Server::reload() {
   if (tokens_) tokens_->reload();
+  if (callbacks_) callbacks_->reload();
   if (front_ != nullptr) front_->reload();
   if (console_ != nullptr) console_->reload();
 }

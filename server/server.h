@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "server/admission/admission.h"
+#include "server/callbacks/callbacks.h"
 #include "server/console/console.h"
 #include "server/front/front.h"
 #include "server/front/probe.h"
@@ -64,16 +65,18 @@ class Server {
   // files. Call at most once.
   void drain(std::chrono::steady_clock::duration at_most);
 
-  // Reads the tokens and the certificates again, which happens by itself within two seconds of a
-  // change; what is open stays open, but for the streams of tokens that are gone.
+  // Reads the tokens, the secrets of callbacks and the certificates again, which happens by itself
+  // within two seconds of a change; what is open stays open, but for the streams of tokens that are
+  // gone.
   void reload();
 
   // For a process that exits without draining.
   void remove_socket_files();
 
  private:
-  Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens, EngineFn engine,
-         Logger log, std::unique_ptr<JobStore> store);
+  Server(const ServerOptions& options, std::unique_ptr<TokenFile> tokens,
+         std::unique_ptr<Callbacks> callbacks, EngineFn engine, Logger log,
+         std::unique_ptr<JobStore> store);
   JobService* job_service();  // null if there is none
   // Ends the streams of callers whose token is no longer known.
   void revoke_unknown();
@@ -82,8 +85,9 @@ class Server {
   std::optional<std::string> start_console(const ServerOptions& options);
 
   const Logger log_;
-  const std::unique_ptr<TokenFile> tokens_;  // may be null
-  const std::string console_secret_;         // see caller.h
+  const std::unique_ptr<TokenFile> tokens_;     // may be null
+  const std::unique_ptr<Callbacks> callbacks_;  // may be null
+  const std::string console_secret_;            // see caller.h
   ConnectionTable connections_;
   const Authenticator authenticator_;
   Metrics metrics_;

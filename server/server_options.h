@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/admission/admission.h"
+#include "server/callbacks/callbacks.h"
 #include "server/console/console.h"
 #include "server/jobs/job_system.h"
 #include "server/mesh/mesh_service.h"
@@ -24,7 +25,8 @@ struct ServerOptions {
   std::uint64_t memory = std::uint64_t{8} << 30;
   // Where there is a store. Their limits are those of `service`.
   JobOptions jobs{};
-  TlsOptions tls{};  // of TCP addresses; a unix socket is guarded by its folder
+  TlsOptions tls{};             // of TCP addresses; a unix socket is guarded by its folder
+  CallbackOptions callbacks{};  // of these jobs
   // Connections over TCP that may be open at the same time; one client has the share of
   // `service.client_share`.
   std::uint64_t max_connections = 1024;

@@ -48,7 +48,7 @@ get_property(loaded_later GLOBAL PROPERTY weft_packages_of_weftd)
 list(JOIN loaded_later ", " loaded_later)
 set(CPACK_DEBIAN_WEFTD_PACKAGE_DEPENDS
   "systemd | systemd-standalone-sysusers | systemd-sysusers, ${loaded_later}")
-set(CPACK_DEBIAN_WEFTD_PACKAGE_SUGGESTS weft)
+set(CPACK_DEBIAN_WEFTD_PACKAGE_SUGGESTS "weft, ca-certificates")
 set(scripts ${CMAKE_CURRENT_SOURCE_DIR}/debian)
 set(CPACK_DEBIAN_WEFTD_PACKAGE_CONTROL_EXTRA
   ${scripts}/weftd/conffiles ${scripts}/weftd/postinst ${scripts}/weftd/prerm ${scripts}/weftd/postrm)

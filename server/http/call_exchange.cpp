@@ -1,27 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/call_exchange.h"
 
-#include <google/protobuf/util/json_util.h>
 #include <grpcpp/support/proto_buffer_reader.h>
 
 #include <optional>
 #include <utility>
 
+#include "server/wire/json.h"
+
 namespace weft::server {
 namespace {
 
 namespace http = boost::beast::http;
-
-std::string json_of(const google::protobuf::Message& message) {
-  google::protobuf::util::JsonPrintOptions options;
-  options.add_whitespace = true;
-  options.always_print_primitive_fields = true;
-  options.preserve_proto_field_names = true;
-  std::string text;
-  // Fails for messages of unknown types in it alone.
-  (void)google::protobuf::util::MessageToJsonString(message, &text, options);
-  return text;
-}
 
 }  // namespace
 

@@ -321,6 +321,7 @@ void MeshExchange::begin(SentDomain sent, std::shared_ptr<files::MeshSpool> spoo
 void MeshExchange::begin_job(std::string mesh) {
   v1::SubmitJobRequest job;
   job.set_request_id(wish_.request_id);
+  job.set_notify(wish_.notify);
   job.set_no_cache(wish_.request.no_cache());
   std::vector<UnaryCall> calls;
   calls.push_back({"/weft.v1.JobService/SubmitJob", with_part(1, mesh, job.SerializeAsString()),

@@ -248,6 +248,18 @@ std::vector<Parameter> own_parameters() {
          wish.request_id = text;
          return "";
        }},
+      {"notify",
+       Type::kText,
+       "URL that is told of the job's end, by a POST of what /v1/jobs/{id} answers then, signed as "
+       "Standard Webhooks are. Default: the one that the server has for the client",
+       {},
+       false,
+       Use::kJob,
+       "notify",
+       [](const std::string& text, MeshWish& wish) {
+         wish.notify = text;
+         return "";
+       }},
   };
   return all;
 }

@@ -36,6 +36,7 @@ struct MeshWish {
   std::string to{};                   // ".vtu"; empty: what Accept wants
   std::optional<double> timeout{};    // seconds
   std::string request_id{};           // of a job
+  std::string notify{};               // URL that is told of its end
   files::PolygonFill fill = files::PolygonFill::kUnion;
   files::ProjectionOptions projection{};
   files::MeshWriteOptions writing{};

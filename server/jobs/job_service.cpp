@@ -205,6 +205,18 @@ void JobService::submit_job(const std::shared_ptr<AdmittedCall>& call) {
   });
 }
 
+JobService::Answer<Callback> JobService::callback_of(const Caller& caller,
+                                                     const std::string& url) const {
+  const auto bad = [](std::string message) {
+    return tl::unexpected(Failure{Reason::kBadOption, "notify", std::move(message)});
+  };
+  if (options_.callbacks == nullptr && url.empty()) return Callback{};
+  if (options_.callbacks == nullptr) return bad("the server sends no callbacks");
+  auto callback = options_.callbacks->accept(caller.name, url);
+  if (!callback) return bad(std::move(callback.error()));
+  return std::move(*callback);
+}
+
 JobService::Answer<v1::SubmitJobResponse> JobService::submit(const Caller& caller,
                                                              v1::SubmitJobRequest request,
                                                              std::size_t bytes) {
@@ -212,6 +224,8 @@ JobService::Answer<v1::SubmitJobResponse> JobService::submit(const Caller& calle
   const auto estimate = check_and_estimate(request.mesh(), options_.limits,
                                            options_.works ? &environment_.memory : nullptr);
   if (!estimate) return tl::unexpected(estimate.error());
+  auto callback = callback_of(caller, request.notify());
+  if (!callback) return tl::unexpected(callback.error());
   Submission submission{.owner = caller.name,
                         .request_id = request.request_id(),
                         .request = request.mesh().SerializeAsString(),
@@ -220,7 +234,9 @@ JobService::Answer<v1::SubmitJobResponse> JobService::submit(const Caller& calle
                         .trace = caller.trace,
                         .no_cache = request.no_cache() || request.mesh().no_cache(),
                         .max_queued = options_.max_queued,
-                        .max_open_of_owner = options_.max_open_of_client};
+                        .max_open_of_owner = options_.max_open_of_client,
+                        .callback = std::move(*callback),
+                        .max_callbacks_of_owner = options_.max_open_of_client};
   submission.key = mesh_key(std::move(*request.mutable_mesh()));  // not a third copy of it
   if (!options_.share_across_clients) submission.key = key_of_client(submission.key, caller.name);
   auto submitted = store_.submit(submission);

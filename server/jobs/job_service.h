@@ -18,6 +18,7 @@
 #include <thread>
 
 #include "server/admission/admission.h"
+#include "server/callbacks/callbacks.h"
 #include "server/jobs/job_stream.h"
 #include "server/net/open_streams.h"
 #include "server/observe/log.h"
@@ -35,9 +36,12 @@ struct JobServiceOptions {
   bool works = true;
   // Whether a client's job may share work or a mesh with another client's.
   bool share_across_clients = true;
-  // Maximum waiting tasks of all clients, and jobs of one client that have not ended.
+  // Maximum waiting tasks of all clients, and jobs of one client that have not ended, and as many
+  // callbacks of its that are neither delivered nor failed.
   std::uint64_t max_queued = 10'000;
   std::uint64_t max_open_of_client = 1'000;
+  // Who may have callbacks; outlives the service. Null: nobody.
+  const Callbacks* callbacks = nullptr;
   // The fraction of the calls that wait for the store, and of the threads that use it, that one
   // client may have.
   double client_share = 1;
@@ -71,6 +75,9 @@ class JobService final : public RawService {
  private:
   template <class Response>
   using Answer = tl::expected<Response, Failure>;
+
+  // For a job that names this URL.
+  Answer<Callback> callback_of(const Caller& caller, const std::string& url) const;
 
   // Adds a method with one reply, which a thread of the service computes.
   template <class Request, class Response>

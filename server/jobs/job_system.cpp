@@ -29,6 +29,11 @@ JobSystem::JobSystem(std::unique_ptr<JobStore> store, JobOptions options, Admiss
   store_->on_change([this] { notify(); });
   if (options.serves) service_.emplace(options.service, admission, metrics, memory, *store_, log);
   if (options.works) runner_.emplace(environment, queue, options.runner);
+  if (options.service.callbacks != nullptr)
+    sender_.emplace(
+        CallbackSender::Parts{*options.service.callbacks, *store_, log,
+                              [&metrics](const char* outcome) { metrics.callback_sent(outcome); }},
+        options.callbacks);
   MutexLock lock(mutex_);
   listening_ = true;
 }
@@ -44,6 +49,7 @@ void JobSystem::notify() {
   if (!listening_) return;
   if (service_) service_->wake();
   if (runner_) runner_->wake();
+  if (sender_) sender_->wake();
 }
 
 QueueStats JobSystem::stats() {
@@ -56,6 +62,7 @@ QueueStats JobSystem::stats() {
 void JobSystem::close() {
   if (service_) service_->close();
   if (runner_) runner_->stop();
+  if (sender_) sender_->stop();
 }
 
 }  // namespace weft::server

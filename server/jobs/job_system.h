@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The part of a server that handles stored jobs: the store, the service that accepts and shows
-// jobs, and the workers that run them. A server may have the service, the workers, or both; any
-// number of servers may share a PostgreSQL store.
+// jobs, the workers that run them, and what tells of their ends. A server may have the service, the
+// workers, or both; any number of servers may share a PostgreSQL store.
 //
 // The gRPC server that `service()` is registered with must be shut down before this is destroyed.
 #pragma once
@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 
+#include "server/callbacks/callback_sender.h"
 #include "server/jobs/job_runner.h"
 #include "server/jobs/job_service.h"
 #include "server/observe/log.h"
@@ -25,6 +26,7 @@ struct JobOptions {
   RetryPolicy retry{};  // its error is filled in
   bool serves = true;
   bool works = true;
+  SenderOptions callbacks{};  // if the service has any
 };
 
 class JobSystem {
@@ -40,7 +42,8 @@ class JobSystem {
   // Calls the store.
   QueueStats stats();
 
-  // Refuses new calls and puts running tasks back into the queue. Open calls go on.
+  // Refuses new calls, puts running tasks back into the queue, and sends no more callbacks. Open
+  // calls go on.
   void close();
 
  private:
@@ -49,8 +52,9 @@ class JobSystem {
   std::unique_ptr<JobStore> store_;
   std::optional<JobService> service_;
   std::optional<JobRunner> runner_;
+  std::optional<CallbackSender> sender_;
   Mutex mutex_;
-  bool listening_ ABSL_GUARDED_BY(mutex_) = false;  // whether the two above exist
+  bool listening_ ABSL_GUARDED_BY(mutex_) = false;  // whether the three above exist
 };
 
 }  // namespace weft::server

@@ -79,11 +79,15 @@ Metrics::Metrics(std::string_view version, std::string_view engine_version)
           counter(registry_, "weft_leases_lost_total",
                   "Attempts at a mesh whose lease ran out, because their worker was lost or hung")),
       damaged_chunks_(counter(registry_, "weft_damaged_chunks_total",
-                              "Stored chunks that were found to have other bytes than were put")) {
+                              "Stored chunks that were found to have other bytes than were put")),
+      callbacks_(counters(registry_, "weft_callbacks_total",
+                          "Attempts to tell a client's URL of the end of a job")) {
   // So that the first of each shows as an increase, too.
   for (const char* cause : kClosingCauses) connections_closed_.Add({{"cause", cause}});
   for (const char* state : {"queued", "running", "succeeded", "failed", "cancelled"})
     jobs_.Add({{"state", state}});
+  for (const char* outcome : {"delivered", "put_off", "failed"})
+    callbacks_.Add({{"outcome", outcome}});
   prometheus::BuildGauge()
       .Name("weft_build_info")
       .Help("Always 1; the versions are in the labels")
@@ -100,6 +104,10 @@ void Metrics::call_ended(std::string_view method, grpc::StatusCode code, double 
 
 void Metrics::job_became(std::string_view state) {
   jobs_.Add({{"state", std::string(state)}}).Increment();
+}
+
+void Metrics::callback_sent(std::string_view outcome) {
+  callbacks_.Add({{"outcome", std::string(outcome)}}).Increment();
 }
 
 void Metrics::connection_closed(std::string_view cause) {

@@ -68,6 +68,9 @@ class Metrics {
   // Counts leases that ran out. Each is found by only one server of a store.
   void leases_lost(std::uint64_t count) { leases_lost_.Increment(static_cast<double>(count)); }
 
+  // Counts an attempt at a callback. `outcome` is as in the log: delivered, put_off or failed.
+  void callback_sent(std::string_view outcome);
+
   // Counts stored chunks that were found damaged.
   void chunk_damaged() { damaged_chunks_.Increment(); }
 
@@ -101,6 +104,7 @@ class Metrics {
   prometheus::Counter& cache_misses_;
   prometheus::Counter& leases_lost_;
   prometheus::Counter& damaged_chunks_;
+  prometheus::Family<prometheus::Counter>& callbacks_;
 
   mutable std::mutex mutex_;  // guards the two below
   std::vector<Queue> queues_;

@@ -29,6 +29,30 @@ std::string text_of(const std::string& stored) {
   return text;
 }
 
+v1::CallbackState to_wire(CallbackState state) {
+  switch (state) {
+    case CallbackState::kNone:
+      return v1::CALLBACK_STATE_UNSPECIFIED;
+    case CallbackState::kPending:
+    case CallbackState::kClaimed:
+      return v1::CALLBACK_STATE_PENDING;
+    case CallbackState::kDelivered:
+      return v1::CALLBACK_STATE_DELIVERED;
+    case CallbackState::kFailed:
+      return v1::CALLBACK_STATE_FAILED;
+  }
+  return v1::CALLBACK_STATE_UNSPECIFIED;
+}
+
+v1::Callback to_wire(const Callback& stored) {
+  v1::Callback callback;
+  callback.set_url(text_of(stored.url));
+  callback.set_state(to_wire(stored.state));
+  callback.set_attempts(stored.attempts);
+  callback.set_error(text_of(stored.error));
+  return callback;
+}
+
 template <class Message>
 void parse_into(Message& message, const std::string& stored) {
   if (!message.ParseFromString(stored)) message.Clear();
@@ -94,6 +118,7 @@ v1::Job to_wire(const JobRecord& record) {
   }
   job.set_from_store(record.from_store);
   job.set_client(text_of(record.owner));
+  if (!record.callback.url.empty()) *job.mutable_callback() = to_wire(record.callback);
   if (!record.brief.empty()) {
     parse_into(*job.mutable_summary(), record.brief);
     job.mutable_summary()->clear_leaf_boxes();  // of meshes that older servers made

@@ -105,6 +105,19 @@ def test_certificates_and_tokens_are_mounted_and_the_probes_go_round_them(render
     assert made["Service"]["spec"]["ports"][0]["appProtocol"] == "https"
 
 
+def test_callbacks_have_their_secrets_and_a_way_out(renderer):
+    made = objects(rendered(renderer, {"callbacks": {"secret": "weft-callbacks"}}))
+    pod = made["Deployment"]["spec"]["template"]["spec"]
+    container, = pod["containers"]
+    assert {"name": "WEFT_NOTIFY_SECRETS", "value": "/etc/weft/callbacks/secrets"} in container["env"]
+    folders = {mount["name"]: mount["mountPath"] for mount in container["volumeMounts"]}
+    assert folders["callbacks"] == "/etc/weft/callbacks"
+    names = {volume["name"]: volume["secret"]["secretName"] for volume in pod["volumes"] if "secret" in volume}
+    assert names == {"callbacks": "weft-callbacks"}
+    ports = {port["port"] for rule in made["NetworkPolicy"]["spec"]["egress"] for port in rule["ports"]}
+    assert ports == {53, 80, 443}
+
+
 def test_tokens_alone_leave_the_probes_of_grpc(renderer):
     made = objects(rendered(renderer, {"tokens": {"secret": "weft-tokens"}}))
     container, = made["Deployment"]["spec"]["template"]["spec"]["containers"]

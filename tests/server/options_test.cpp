@@ -46,6 +46,21 @@ TEST(MemoryOptions, LetAllRunsTogetherHaveWhatIsLeftForThem) {
   EXPECT_EQ(service_of({"--memory", "8GiB"}).limits.max_bytes, for_runs(8 * kGiB) / 4);
 }
 
+TEST(CallbackOptions, AllowNetworksByTheirCidr) {
+  const auto parsed = parse({"--data", "d", "--notify-secrets", "f", "--notify-allow",
+                             "10.0.0.0/8,fd00::/8", "--notify-allow", "127.0.0.0/8"});
+  ASSERT_TRUE(std::holds_alternative<Options>(parsed));
+  const CallbackOptions& callbacks = std::get<Options>(parsed).server.callbacks;
+  EXPECT_EQ(callbacks.clients, "f");
+  EXPECT_EQ(callbacks.allowed.size(), 3u);
+  EXPECT_NE(complaint_about({"--data", "d", "--notify-secrets", "f", "--notify-allow", "10.0.0.1"})
+                .find("10.0.0.1 is no network such as 10.0.0.0/8"),
+            std::string::npos);
+  EXPECT_NE(
+      complaint_about({"--data", "d", "--notify-allow", "10.0.0.0/8"}).find("--notify-secrets"),
+      std::string::npos);
+}
+
 TEST(MemoryOptions, LeaveRoomForTwoMessagesButNoMoreThanHalf) {
   EXPECT_EQ(service_of({}).cache_bytes, 64 * kMiB);
   const ServiceOptions little = service_of({"--memory", "1GiB", "--jobs", "1"});

@@ -339,8 +339,10 @@ TEST(Process, EndsWith2OnWrongFlags) {
 }
 
 TEST(Process, EndsWith2OnFlagsOfAStoreWithoutOne) {
-  for (const std::vector<std::string>& flags :
-       {std::vector<std::string>{"--role", "worker"}, {"--keep", "60"}, {"--max-queued", "9"}}) {
+  for (const std::vector<std::string>& flags : {std::vector<std::string>{"--role", "worker"},
+                                                {"--keep", "60"},
+                                                {"--max-queued", "9"},
+                                                {"--notify-secrets", "f"}}) {
     Weftd weftd(flags, {{"WEFT_LISTEN", "127.0.0.1:0"}});
     EXPECT_EQ(weftd.wait(), 2) << flags.front();
     EXPECT_NE(weftd.log().find(flags.front() + " requires --data or --store"), std::string::npos)

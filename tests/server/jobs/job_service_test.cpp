@@ -371,6 +371,21 @@ TEST(JobService, ChecksAJobBeforeItIsAccepted) {
   EXPECT_EQ(runs, 0);
 }
 
+TEST(JobService, TellsNobodyUnlessTheServerHasSecrets) {
+  std::atomic<int> runs{0};
+  JobServer server(counting_engine(runs));
+  v1::SubmitJobRequest request;
+  *request.mutable_mesh() = valid_request();
+  request.set_notify("https://example.org/hook");
+  const auto answer = server.client().submit(request);
+  EXPECT_EQ(answer.status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(answer.status.error_message(), "the server sends no callbacks");
+  request.clear_notify();
+  const auto accepted = server.client().submit(request);
+  ASSERT_TRUE(accepted.status.ok());
+  EXPECT_FALSE(accepted.message.job().has_callback());
+}
+
 TEST(JobService, ChecksTheCoordinatesOfAJobBeforeItIsAccepted) {
   std::atomic<int> runs{0};
   JobServer server(counting_engine(runs), quick_jobs());

@@ -74,6 +74,16 @@ TEST(Metrics, CountWhatBecomesOfJobsFromZeroOn) {
   }
 }
 
+TEST(Metrics, CountCallbacksByOutcomeFromZeroOn) {
+  Metrics metrics("v", "e");
+  for (const std::string outcome : {"delivered", "put_off", "failed"}) {
+    const std::string series = "weft_callbacks_total{outcome=\"" + outcome + "\"}";
+    EXPECT_EQ(value_of(metrics.text(), series), 0) << outcome;
+    metrics.callback_sent(outcome);
+    EXPECT_EQ(value_of(metrics.text(), series), 1) << outcome;
+  }
+}
+
 TEST(Metrics, CountClosedConnectionsByCauseFromZeroOn) {
   Metrics metrics("v", "e");
   const std::string series = "weft_connections_closed_total{cause=\"resets\"}";

@@ -28,6 +28,25 @@ TEST(JobWire, WritesWhatClientsCanReadWhateverTheRecordHolds) {
   EXPECT_EQ(read.summary().engine_version(), "");
 }
 
+TEST(JobWire, SaysWhatBecameOfACallback) {
+  JobRecord record;
+  EXPECT_FALSE(to_wire(record).has_callback());
+  record.callback = {.url = "u\x80", .attempts = 3, .error = "e"};
+  for (const auto& [state, wire] :
+       {std::pair(CallbackState::kPending, v1::CALLBACK_STATE_PENDING),
+        std::pair(CallbackState::kClaimed, v1::CALLBACK_STATE_PENDING),
+        std::pair(CallbackState::kDelivered, v1::CALLBACK_STATE_DELIVERED),
+        std::pair(CallbackState::kFailed, v1::CALLBACK_STATE_FAILED),
+        std::pair(static_cast<CallbackState>(99), v1::CALLBACK_STATE_UNSPECIFIED)}) {
+    record.callback.state = state;
+    const v1::Job job = to_wire(record);
+    EXPECT_EQ(job.callback().state(), wire);
+    EXPECT_EQ(job.callback().url(), "u?");
+    EXPECT_EQ(job.callback().attempts(), 3U);
+    EXPECT_EQ(job.callback().error(), "e");
+  }
+}
+
 TEST(JobWire, ReadsARequestThatWasChecked) {
   v1::GenerateMeshRequest request;
   for (const double c : {0., 0., 1., 0., 0., 1.}) request.mutable_domain()->add_points(c);

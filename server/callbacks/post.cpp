@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/callbacks/post.h"
+
+#include <openssl/ssl.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/host_name_verification.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/buffer_body.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <boost/beast/http/write.hpp>
+#include <boost/beast/ssl/ssl_stream.hpp>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+namespace weft::server {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+using boost::system::error_code;
+using tcp = boost::asio::ip::tcp;
+using Clock = std::chrono::steady_clock;
+
+// Of an answer.
+constexpr std::uint32_t kMaxHeader = 16 << 10;
+constexpr std::size_t kMaxBody = 64 << 10;
+
+http::request<http::string_body> message_of(const PostRequest& request) {
+  http::request<http::string_body> message{http::verb::post, request.url.target, 11};
+  message.set(http::field::host, request.url.authority());
+  message.set(http::field::user_agent, "weftd");
+  message.set(http::field::content_type, "application/json");
+  message.set(http::field::connection, "close");
+  for (const auto& [name, value] : request.headers) message.set(name, value);
+  message.body() = request.body;
+  message.prepare_payload();
+  return message;
+}
+
+Posted unanswered(const error_code& error) {
+  return {.error = error == beast::error::timeout ? "it took too long" : error.message()};
+}
+
+}  // namespace
+
+// One request, on its own io_context, which runs until what was begun has ended, or is stopped.
+class Poster::Sending {
+ public:
+  explicit Sending(Poster& poster) : poster_(poster) {
+    MutexLock lock(poster_.mutex_);
+    poster_.sending_.insert(&io_);
+    if (poster_.stopping_) io_.stop();
+  }
+  ~Sending() {
+    MutexLock lock(poster_.mutex_);
+    poster_.sending_.erase(&io_);
+  }
+  Sending(const Sending&) = delete;
+  Sending& operator=(const Sending&) = delete;
+
+  Posted send(const PostRequest& request) {
+    error_code error;
+    const auto found = tcp::resolver(io_).resolve(request.url.host, request.url.port,
+                                                  tcp::resolver::numeric_service, error);
+    if (error) return {.error = "the host is not found: " + error.message()};
+    beast::tcp_stream stream(io_);
+    error = asio::error::access_denied;
+    for (const auto& each : found) {
+      if (!poster_.rules_.may_reach(each.endpoint().address())) continue;
+      stream.expires_at(std::min(Clock::now() + poster_.limits_.connect, end_));
+      error = finish([&](auto done) { stream.async_connect(each.endpoint(), std::move(done)); });
+      if (!error) break;
+    }
+    if (error == asio::error::access_denied)
+      return {.refused = true, .error = "the host has no address that callbacks may go to"};
+    if (error) return unanswered(error);
+    stream.expires_at(end_);
+    if (!request.url.tls) return exchange(stream, request);
+    beast::ssl_stream<beast::tcp_stream> encrypted(std::move(stream), poster_.authorities_);
+    encrypted.set_verify_callback(asio::ssl::host_name_verification(request.url.host));
+    SSL_set_tlsext_host_name(encrypted.native_handle(), request.url.host.c_str());
+    error = finish([&](auto done) {
+      encrypted.async_handshake(asio::ssl::stream_base::client, std::move(done));
+    });
+    if (error) return unanswered(error);
+    return exchange(encrypted, request);
+  }
+
+ private:
+  template <class Begin>
+  error_code finish(const Begin& begin) {
+    std::optional<error_code> result;
+    begin([&result](const error_code& error, const auto&...) { result = error; });
+    while (!result)
+      if (io_.run_one() == 0) return asio::error::operation_aborted;
+    return *result;
+  }
+
+  template <class Stream>
+  Posted exchange(Stream& stream, const PostRequest& request) {
+    if (Clock::now() >= end_) return unanswered(beast::error::timeout);
+    const auto message = message_of(request);
+    error_code error =
+        finish([&](auto done) { http::async_write(stream, message, std::move(done)); });
+    if (error) return unanswered(error);
+    beast::flat_buffer buffer(2 * kMaxHeader);
+    http::response_parser<http::buffer_body> answer;
+    answer.header_limit(kMaxHeader);
+    answer.body_limit(std::numeric_limits<std::uint64_t>::max());  // skip_body has its own
+    error = finish(
+        [&](auto done) { http::async_read_header(stream, buffer, answer, std::move(done)); });
+    if (error) return unanswered(error);
+    skip_body(stream, buffer, answer);
+    return {.status = answer.get().result_int()};
+  }
+
+  // So that a receiver with a short answer does not see a broken connection.
+  template <class Stream>
+  void skip_body(Stream& stream, beast::flat_buffer& buffer,
+                 http::response_parser<http::buffer_body>& answer) {
+    std::array<char, 4096> scrap;
+    for (std::size_t read = 0; !answer.is_done() && read < kMaxBody; read += scrap.size()) {
+      answer.get().body().data = scrap.data();
+      answer.get().body().size = scrap.size();
+      const error_code error =
+          finish([&](auto done) { http::async_read(stream, buffer, answer, std::move(done)); });
+      if (error && error != http::error::need_buffer) return;
+    }
+  }
+
+  Poster& poster_;
+  const Clock::time_point end_ = Clock::now() + poster_.limits_.total;
+  asio::io_context io_{1};
+  const asio::executor_work_guard<asio::io_context::executor_type> work_{io_.get_executor()};
+};
+
+Poster::Poster(AddressRules rules, const PostLimits& limits)
+    : rules_(std::move(rules)), limits_(limits), authorities_(asio::ssl::context::tls_client) {
+  SSL_CTX_set_min_proto_version(authorities_.native_handle(), TLS1_2_VERSION);
+  authorities_.set_default_verify_paths();
+  authorities_.set_verify_mode(asio::ssl::verify_peer);
+}
+
+Posted Poster::post(const PostRequest& request) {
+  return Sending(*this).send(request);
+}
+
+void Poster::stop() {
+  MutexLock lock(mutex_);
+  stopping_ = true;
+  for (asio::io_context* const io : sending_) io->stop();
+}
+
+}  // namespace weft::server
