@@ -16,6 +16,7 @@
 #include "files/formats/domains/ogr.h"
 #include "files/formats/domains/shapefile.h"
 #include "files/formats/domains/wkt.h"
+#include "files/formats/domains/zipped_shapefile.h"
 #include "files/formats/mesh_formats.h"
 #include "files/formats/triangle/triangle_poly.h"
 
@@ -74,7 +75,7 @@ constexpr DomainFormat kFormats[] = {
     {.extension = ".gmt", .drivers = kGmt},
     {.extension = ".geojsonl", .drivers = kGeoJsonSequence},
     {.extension = ".topojson", .drivers = kTopoJson},
-    {.extension = ".zip", .is_archive = true},
+    {.extension = ".zip", .is_archive = true, .read_archived = read_zipped_shapefile},
 };
 
 // Of the formats that `takes` takes.
@@ -163,6 +164,7 @@ Result<Domain> read_own_domain(const DataPath& path, const LayerOptions& layers)
     return fail(ExitCode::kUsage,
                 in_quotes(extension_of(path)) +
                     " is not a format that is read here: " + own_domain_extensions());
+  if (format->read_archived != nullptr) return format->read_archived(path, layers.lonlat);
   return read_domain(path, layers);
 }
 

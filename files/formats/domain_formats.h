@@ -25,10 +25,14 @@ struct DomainFormat {
   const char* const* drivers = nullptr;
   const char* const* driver_options = nullptr;
   bool is_archive = false;  // of files in other formats: ogr_archive.h
+  // Of an archive: weft's own reader of the only file in it, in a format that it reads by itself.
+  Result<Domain> (*read_archived)(const std::filesystem::path&, bool lonlat) = nullptr;
   bool needs_name = false;  // to be read: there are files beside it, or a library asks for the name
 
   // Whether weft's own reader reads it, from its file alone.
-  bool is_own() const { return (read != nullptr || read_layers != nullptr) && !needs_name; }
+  bool is_own() const {
+    return read_archived != nullptr || ((read != nullptr || read_layers != nullptr) && !needs_name);
+  }
   bool has_layers() const { return drivers != nullptr || read_layers != nullptr || is_archive; }
 };
 
@@ -42,7 +46,7 @@ const DomainFormat* domain_format(const DataPath& path);
 Result<Domain> read_domain(const DataPath& path, const LayerOptions& layers = {});
 
 // Reads a stranger's file: by weft's own readers alone, which open no other file. Errors: kUsage
-// for the extension of another format.
+// for the extension of another format; kUnwritableOutput if there is no room to unpack it.
 Result<Domain> read_own_domain(const DataPath& path, const LayerOptions& layers = {});
 // ".poly, .geojson, ...": their extensions.
 std::string own_domain_extensions();

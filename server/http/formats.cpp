@@ -23,7 +23,9 @@ constexpr MediaType kRead[] = {{"application/geo+json", ".geojson"},
                                {"text/csv", ".csv"},
                                {"image/vnd.dxf", ".dxf"},
                                {"application/dxf", ".dxf"},
-                               {"application/x-dxf", ".dxf"}};
+                               {"application/x-dxf", ".dxf"},
+                               {"application/zip", ".zip"},
+                               {"application/x-zip-compressed", ".zip"}};
 constexpr MediaType kWritten[] = {{"application/geo+json", ".geojson"},
                                   {"application/x-netcdf", ".nc"},
                                   {"application/netcdf", ".nc"},
@@ -59,6 +61,7 @@ std::string sniffed(std::string_view bytes) {
   std::string text = files::lower_case(bytes.substr(0, kMax));
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
   if (text.starts_with("autocad binary dxf")) return ".dxf";
+  if (text.starts_with("pk\3\4")) return ".zip";
   text.erase(0, std::min(text.find_first_not_of(" \t\r\n"), text.size()));
   for (const std::string_view word :
        {"polygon", "multipolygon", "linestring", "multilinestring", "point", "multipoint",

@@ -61,6 +61,7 @@ const std::vector<Format>& formats() {
       {Kind::kDomain, {".in2d"}},
       {Kind::kDomain, {".fem"}},
       {Kind::kMesh, {".inp"}},
+      {Kind::kDomain, {".zip"}},
   };
   return all;
 }
@@ -175,7 +176,8 @@ void judge(const std::uint8_t* data, std::size_t size) {
       for (const double v : values->values) must(!std::isinf(v), "values", "an infinite one");
     }
   }
-  const auto domain = read_domain(paths[0]);
+  const bool is_archive = paths[0].extension() == ".zip";  // GDAL reads them, too
+  const auto domain = is_archive ? read_own_domain(paths[0]) : read_domain(paths[0]);
   must_be_sound(domain, "domain");
   if (domain) must_be_sound(seeded(*domain), "domain");
 }

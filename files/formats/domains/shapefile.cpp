@@ -63,14 +63,17 @@ SAHooks quiet_hooks() {
 class Table {
  public:
   // An error if there is a table that cannot be read. It is no error if there is none.
-  Result<void> open(const std::filesystem::path& path, const SAHooks& hooks) {
+  Result<void> open(const std::filesystem::path& path, const SAHooks& hooks,
+                    const std::filesystem::path& text) {
     std::error_code ignored;
     for (const char* extension : {".dbf", ".DBF"}) {
       const auto name = std::filesystem::path(path).replace_extension(extension);
       if (!std::filesystem::exists(name, ignored)) continue;
       table_.reset(::DBFOpenLL(name.c_str(), "rb", const_cast<SAHooks*>(&hooks)));
       if (!table_)
-        return fail(ExitCode::kUnreadableInput, name.string() + ": is not a dBASE table");
+        return fail(ExitCode::kUnreadableInput,
+                    std::filesystem::path(text).replace_extension(extension).string() +
+                        ": is not a dBASE table");
       return {};
     }
     return {};
@@ -96,15 +99,17 @@ class Table {
 
 class Reader {
  public:
-  Reader(const std::filesystem::path& path, const SAHooks& hooks, bool lonlat)
-      : path_(path), hooks_(hooks), builder_(path.string(), lonlat) {}
+  Reader(const std::filesystem::path& path, const SAHooks& hooks, bool lonlat,
+         const std::string& name)
+      : path_(path), name_(name), hooks_(hooks), builder_(name, lonlat) {}
 
   Result<Domain> read() {
     const std::unique_ptr<SHPInfo, CloseShapes> shapes(
         ::SHPOpenLL(path_.c_str(), "rb", const_cast<SAHooks*>(&hooks_)));
     if (!shapes)
       return builder_.bad("", "is not a shapefile, or it or the .shx beside it is damaged");
-    if (auto opened = table_.open(path_, hooks_); !opened) return tl::unexpected(opened.error());
+    if (auto opened = table_.open(path_, hooks_, name_); !opened)
+      return tl::unexpected(opened.error());
     int count = 0;
     int kind = 0;
     ::SHPGetInfo(shapes.get(), &count, &kind, nullptr, nullptr);
@@ -181,6 +186,7 @@ class Reader {
   }
 
   std::filesystem::path path_;
+  std::string name_;
   const SAHooks& hooks_;
   Table table_;
   GeometryBuilder builder_;
@@ -208,11 +214,16 @@ std::optional<CoordinateSystem> system_beside(const std::filesystem::path& path)
 }  // namespace
 
 Result<Domain> read_shapefile(const std::filesystem::path& path, bool lonlat) {
+  return read_shapefile(path, lonlat, path.string());
+}
+
+Result<Domain> read_shapefile(const std::filesystem::path& path, bool lonlat,
+                              const std::string& name) {
   if (std::error_code missing; !std::filesystem::is_regular_file(path, missing))
     return fail(ExitCode::kUnreadableInput,
                 path.string() + ": " + (missing ? missing.message() : "is not a regular file"));
   const SAHooks hooks = quiet_hooks();
-  auto domain = Reader(path, hooks, lonlat).read();
+  auto domain = Reader(path, hooks, lonlat, name).read();
   if (domain) domain->system = system_beside(path);
   return domain;
 }

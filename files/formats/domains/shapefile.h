@@ -5,10 +5,12 @@
 // the same as in GeoJSON (geojson.h). What is meshed: see geometry_builder.h. Coordinates are taken
 // as they are; a .prj beside it tells their system.
 //
-// Errors (kUnreadableInput) name the file and the record, counted from 0.
+// Errors (kUnreadableInput) name the file and the record, counted from 0. `name`: what texts call
+// the file instead of its path.
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "files/base/error.h"
 #include "files/formats/domain.h"
@@ -16,5 +18,7 @@
 namespace weft::files {
 
 Result<Domain> read_shapefile(const std::filesystem::path& path, bool lonlat = false);
+Result<Domain> read_shapefile(const std::filesystem::path& path, bool lonlat,
+                              const std::string& name);
 
 }  // namespace weft::files

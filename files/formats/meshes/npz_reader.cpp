@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <cstring>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
@@ -13,8 +12,8 @@
 #include <vector>
 
 #include "files/base/text.h"
-#include "files/bytes/compression.h"
 #include "files/bytes/file_contents.h"
+#include "files/bytes/zip_archive.h"
 #include "files/formats/mesh_formats.h"
 #include "files/formats/meshes/npz.h"
 
@@ -33,108 +32,52 @@ template <class T>
 T number_at(std::string_view bytes, std::uint64_t at) {
   T value;
   if (at > bytes.size() || bytes.size() - at < sizeof value)
-    throw Malformed{"the archive is cut short"};
+    throw Malformed{"an array is cut short"};
   std::memcpy(&value, bytes.data() + at, sizeof value);
   return value;
 }
 
 std::string_view piece(std::string_view bytes, std::uint64_t at, std::uint64_t size) {
-  if (at > bytes.size() || bytes.size() - at < size) throw Malformed{"the archive is cut short"};
+  if (at > bytes.size() || bytes.size() - at < size) throw Malformed{"an array is cut short"};
   return bytes.substr(at, size);
 }
 
 // The arrays of an archive, by name without ".npy".
 class Archive {
  public:
-  explicit Archive(std::string_view bytes) : bytes_(bytes) {
-    constexpr std::size_t kEnd = 22;
-    const std::string_view mark("PK\5\6", 4);
-    const std::size_t end = bytes.rfind(mark);
-    if (end == std::string_view::npos || bytes.size() - end < kEnd)
-      throw Malformed{"is not a zip archive, or it is cut short"};
-    std::uint64_t count = number_at<std::uint16_t>(bytes, end + 10);
-    std::uint64_t at = number_at<std::uint32_t>(bytes, end + 16);
-    constexpr std::size_t kLocator = 20;
-    if (end >= kLocator && bytes.substr(end - kLocator, 4) == std::string_view("PK\6\7", 4)) {
-      const auto end64 = number_at<std::uint64_t>(bytes, end - kLocator + 8);
-      count = number_at<std::uint64_t>(bytes, plus(end64, 32));
-      at = number_at<std::uint64_t>(bytes, plus(end64, 48));
-    }
-    for (std::uint64_t i = 0; i < count; ++i) at = read_entry(at);
-  }
+  explicit Archive(std::string_view bytes) : zip_(opened(bytes)) {}
 
-  bool has(const std::string& name) const { return entries_.contains(name); }
+  bool has(const std::string& name) const { return member(name) != nullptr; }
   std::vector<std::string> names() const {
     std::vector<std::string> names;
-    for (const auto& [name, entry] : entries_) names.push_back(name);
+    for (const auto& [path, entry] : zip_.members())
+      names.push_back(path.ends_with(kEnd) ? path.substr(0, path.size() - kEnd.size()) : path);
     return names;
   }
   std::string_view array(const std::string& name) {
-    const auto found = entries_.find(name);
-    if (found == entries_.end()) throw Malformed{"holds no array " + in_quotes(name)};
-    const Entry& entry = found->second;
-    const auto name_size = number_at<std::uint16_t>(bytes_, plus(entry.header, 26));
-    const auto extra_size = number_at<std::uint16_t>(bytes_, plus(entry.header, 28));
-    const std::string_view packed =
-        piece(bytes_, plus(entry.header, 30u + name_size + extra_size), entry.packed_size);
-    if (entry.method == 0) return packed;
-    if (entry.method != 8)
-      throw Malformed{"array " + in_quotes(name) + " is packed by the method " +
-                      std::to_string(entry.method) + ", only 0 and 8 are read"};
-    auto bytes = unpacked(Packing::kDeflate, packed, entry.size);
+    const ZipMember* const found = member(name);
+    if (found == nullptr) throw Malformed{"holds no array " + in_quotes(name)};
+    const auto bytes = zip_.read(*found, unpacked_[name]);
     if (!bytes) throw Malformed{"array " + in_quotes(name) + " " + bytes.error()};
-    return unpacked_.emplace(name, std::move(*bytes)).first->second;
+    return *bytes;
   }
 
  private:
-  struct Entry {
-    std::uint16_t method;
-    std::uint64_t packed_size;
-    std::uint64_t size;
-    std::uint64_t header;
-  };
+  static constexpr std::string_view kEnd = ".npy";
 
-  static std::uint64_t plus(std::uint64_t at, std::uint64_t more) {
-    if (at > std::numeric_limits<std::uint64_t>::max() - more)
-      throw Malformed{"the archive is cut short"};
-    return at + more;
+  static ZipArchive opened(std::string_view bytes) {
+    auto zip = ZipArchive::open(bytes);
+    if (!zip) throw Malformed{zip.error()};
+    return std::move(*zip);
+  }
+  const ZipMember* member(const std::string& name) const {
+    for (const std::string& path : {name + std::string(kEnd), name})
+      if (const auto found = zip_.members().find(path); found != zip_.members().end())
+        return &found->second;
+    return nullptr;
   }
 
-  // Reads the entry of the central directory at `at`, and returns where the next is.
-  std::uint64_t read_entry(std::uint64_t at) {
-    if (piece(bytes_, at, 4) != std::string_view("PK\1\2", 4))
-      throw Malformed{"the directory of the archive is damaged"};
-    Entry entry{
-        number_at<std::uint16_t>(bytes_, at + 10), number_at<std::uint32_t>(bytes_, at + 20),
-        number_at<std::uint32_t>(bytes_, at + 24), number_at<std::uint32_t>(bytes_, at + 42)};
-    const auto name_size = number_at<std::uint16_t>(bytes_, at + 28);
-    const auto extra_size = number_at<std::uint16_t>(bytes_, at + 30);
-    const auto comment_size = number_at<std::uint16_t>(bytes_, at + 32);
-    std::string_view name = piece(bytes_, at + 46, name_size);
-    read_extra(piece(bytes_, at + 46 + name_size, extra_size), entry);
-    if (name.ends_with(".npy")) name.remove_suffix(4);
-    entries_.emplace(name, entry);
-    return at + 46 + name_size + extra_size + comment_size;
-  }
-
-  // If one of the 32-bit sizes has all bits set, its 64-bit size stands here, in this order.
-  static void read_extra(std::string_view extra, Entry& entry) {
-    while (extra.size() >= 4) {
-      const auto id = number_at<std::uint16_t>(extra, 0);
-      const auto size = number_at<std::uint16_t>(extra, 2);
-      std::string_view field = piece(extra, 4, size);
-      extra.remove_prefix(4u + size);
-      if (id != 1) continue;
-      for (std::uint64_t* value : {&entry.size, &entry.packed_size, &entry.header}) {
-        if (*value != 0xffffffff) continue;
-        *value = number_at<std::uint64_t>(field, 0);
-        field.remove_prefix(8);
-      }
-    }
-  }
-
-  std::string_view bytes_;
-  std::map<std::string, Entry, std::less<>> entries_;
+  ZipArchive zip_;
   std::map<std::string, std::string> unpacked_;
 };
 

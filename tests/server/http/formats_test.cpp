@@ -13,9 +13,9 @@ bool holds(const std::vector<std::string>& names, const std::string& name) {
 }
 
 TEST(HttpFormats, AreReadByOwnReadersAlone) {
-  for (const char* own : {"poly", "geojson", "wkt", "csv", "dxf", "in2d", "fem"})
+  for (const char* own : {"poly", "geojson", "wkt", "csv", "dxf", "in2d", "fem", "zip"})
     EXPECT_TRUE(holds(read_formats(), own)) << own;
-  for (const char* other : {"gpkg", "kml", "gml", "zip", "shp", "vtu", "msh"})
+  for (const char* other : {"gpkg", "kml", "gml", "shp", "vtu", "msh"})
     EXPECT_FALSE(holds(read_formats(), other)) << other;
 }
 
@@ -38,6 +38,8 @@ TEST(HttpFormats, AreToldByNameThenTypeThenBytes) {
   EXPECT_EQ(format_read("", "", "  0\r\nSECTION\r\n"), ".dxf");
   EXPECT_EQ(format_read("", "", "999\nmade by me\n0\nSECTION\n"), ".dxf");
   EXPECT_EQ(format_read("", "", "AutoCAD Binary DXF\r\n"), ".dxf");
+  EXPECT_EQ(format_read("", "", "PK\x03\x04"), ".zip");
+  EXPECT_EQ(format_read("", "application/zip", "x"), ".zip");
   EXPECT_EQ(format_read("", "", "splinecurves2dv2\n"), ".in2d");
   EXPECT_EQ(format_read("", "", "# a box\n4 2 0 0\n1 0 0\n"), ".poly");
   EXPECT_EQ(format_read("", "", "0,0\n1,0\n"), ".csv");

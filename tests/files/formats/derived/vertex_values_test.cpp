@@ -9,6 +9,7 @@
 
 #include "files/formats/mesh_formats.h"
 #include "tests/files/support/temp_folder.h"
+#include "tests/files/support/zip_writer.h"
 
 namespace weft::files {
 namespace {
@@ -166,25 +167,9 @@ TEST_F(VertexValuesOf, AreAnErrorOfUseIfTheFormatHasNone) {
             ".msh, .14, .grd, .gr3, .2dm, .nc, .slf, .npz");
 }
 
-// A zip archive of arrays, uncompressed, without checksums, which are not read.
-std::string npz(const std::vector<std::pair<std::string, std::string>>& arrays) {
-  const auto bytes = [](auto value) {
-    return std::string(reinterpret_cast<const char*>(&value), sizeof value);
-  };
-  std::string out;
-  std::string directory;
-  for (const auto& [name, data] : arrays) {
-    const std::string file = name + ".npy";
-    const auto size = static_cast<std::uint32_t>(data.size());
-    const auto sizes = bytes(size) + bytes(size) + bytes(static_cast<std::uint16_t>(file.size()));
-    directory += "PK\1\2" + std::string(16, '\0') + sizes + std::string(12, '\0') +
-                 bytes(static_cast<std::uint32_t>(out.size())) + file;
-    out += "PK\3\4" + std::string(14, '\0') + sizes + std::string(2, '\0') + file + data;
-  }
-  const auto count = static_cast<std::uint16_t>(arrays.size());
-  return out + directory + "PK\5\6" + std::string(4, '\0') + bytes(count) + bytes(count) +
-         bytes(static_cast<std::uint32_t>(directory.size())) +
-         bytes(static_cast<std::uint32_t>(out.size())) + std::string(2, '\0');
+std::string npz(std::vector<std::pair<std::string, std::string>> arrays) {
+  for (auto& [name, data] : arrays) name += ".npy";
+  return zip_of(arrays);
 }
 
 template <class T>
