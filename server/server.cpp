@@ -255,9 +255,8 @@ std::optional<std::string> Server::listen(const ServerOptions& options) {
 std::optional<std::string> Server::start_console(const ServerOptions& options) {
   if (!options.console.wanted()) return std::nullopt;
   const std::filesystem::path folder = std::filesystem::temp_directory_path();
-  if (const std::string fault = folder_fault(folder);
-      !options.console.http.empty() && !fault.empty())
-    return "--http needs a folder for files that vanish, TMPDIR: " + fault;
+  if (const std::string fault = folder_fault(folder); !fault.empty())
+    return "--console and --http need a folder for files that vanish, TMPDIR: " + fault;
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);  // messages come from this server itself
   auto console = Console::start(

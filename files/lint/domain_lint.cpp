@@ -245,4 +245,14 @@ Result<Lint> lint_domain(const Domain& domain, const DataPath& path, const LintS
   return lint;
 }
 
+void add_warning(Lint& lint, std::string text) {
+  lint.findings.push_back({.kind = kWarning,
+                           .warning = std::string(warning_name(WarningKind::kCoordinates)),
+                           .text = std::move(text)});
+  if (lint.counts.empty() || lint.counts.back().first != kWarning)
+    lint.counts.emplace_back(kWarning, 0);
+  ++lint.counts.back().second;
+  ++lint.total;
+}
+
 }  // namespace weft::files

@@ -51,4 +51,7 @@ bool is_fault_kind(const std::string& name);
 // indices that cannot be computed with.
 Result<Lint> lint_domain(const Domain& domain, const DataPath& path, const LintSettings& settings);
 
+// Adds what there is to say of a domain after its file was read, as a warning about coordinates.
+void add_warning(Lint& lint, std::string text);
+
 }  // namespace weft::files

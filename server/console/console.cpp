@@ -52,7 +52,7 @@ class Console::Listener {
                            parts.body_timeout},
                  .most_request_bytes = parts.most_request_bytes,
                  .budget = ByteBudget(parts.request_bytes)} {
-    if (!options.http.empty()) routes_ = parts.routes(context_);
+    routes_ = parts.routes(context_);
     context_.routes = routes_.get();
   }
   ~Listener() {
@@ -131,7 +131,7 @@ class Console::Listener {
   asio::io_context io_{1};
   // Keeps the thread running, because calls that were dropped may end there after the last session.
   const asio::executor_work_guard<asio::io_context::executor_type> work_{io_.get_executor()};
-  std::unique_ptr<Routes> routes_;                    // may be null
+  std::unique_ptr<Routes> routes_;
   std::vector<std::unique_ptr<Acceptor>> acceptors_;  // one per door
   asio::steady_timer timer_{io_};
   std::thread thread_;
@@ -166,9 +166,9 @@ tl::expected<std::unique_ptr<Console>, std::string> Console::start(const Console
     auto bound = console->listener_->listen(address, std::move(door));
     return bound ? bound : refuse(bound.error());
   };
-  const auto pages = serve(options.address, {.console = true, .files = shared}, "the console");
+  const auto pages = serve(options.address, {.console = true}, "the console");
   if (!pages) return tl::unexpected(pages.error());
-  const auto files = shared ? pages : serve(options.http, {.files = true}, "HTTP");
+  const auto files = shared ? pages : serve(options.http, {}, "HTTP");
   if (!files) return tl::unexpected(files.error());
   console->address_ = *pages;
   console->http_address_ = *files;

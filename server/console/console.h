@@ -49,7 +49,7 @@ struct SessionContext;
 
 struct ConsoleOptions {
   std::string address{};               // HOST:PORT; empty: there is no console
-  std::string http{};                  // HOST:PORT of the routes; empty: there are none
+  std::string http{};                  // HOST:PORT of the routes alone; empty: there is none
   std::vector<std::string> origins{};  // whose pages may call, see request_rules.h
   std::span<const Asset> assets{};     // of the application; empty: gRPC-Web only
   std::chrono::milliseconds header_timeout = std::chrono::seconds(10);

@@ -283,7 +283,7 @@ void HttpSession::dispatch() {
     return refuse(http::status::forbidden,
                   "pages of other origins may not call: --console-origin can allow it");
   if (method == http::verb::options) return respond(preflight_answer(origin_, request));
-  if (door_.files && (!door_.console || target.starts_with("/v1/"))) return begin_exchange();
+  if (!door_.console || target.starts_with("/v1/")) return begin_exchange();
   if (method == http::verb::post) {
     if (!is_method_path(target)) return refuse(http::status::not_found, "there is no such method");
     return begin_call();

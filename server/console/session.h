@@ -39,8 +39,7 @@ struct SessionTimes {
 
 // One of the addresses that are listened on.
 struct Door {
-  bool console = false;  // leads to pages and calls
-  bool files = false;    // leads to the routes
+  bool console = false;  // leads to pages and calls, too, not to the routes alone
   OriginRules rules{};
 };
 
@@ -70,7 +69,7 @@ struct SessionContext {
   SessionTimes times;
   std::uint64_t most_request_bytes;
   ByteBudget budget;
-  Routes* routes = nullptr;    // of doors that lead to files
+  Routes* routes = nullptr;
   std::list<Session*> open{};  // the longest idle first
   bool stopping = false;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A request for a mesh, made of the file of a domain that a stranger sent.
+// A domain, a request for its mesh or the list of its faults, made of the file that a stranger
+// sent.
 #pragma once
 
 #include <filesystem>
@@ -63,6 +64,23 @@ Outcome<SentDomain> read_domain_file(DomainFile file, MeshWish wish,
 // The faults of the domain in the file, as JSON. Problems: as above.
 Outcome<std::string> lint_domain_file(DomainFile file, MeshWish wish,
                                       const std::filesystem::path& folder);
+
+// A file without a name.
+struct NamelessFile {
+  files::FileDescriptor file;
+  std::uint64_t bytes = 0;
+};
+
+// The same with one more member, "domain": the weft.v1.Domain in base64, in the plane if the wish
+// has a projection. `most_bytes`: of that message. Problems: 413 for more, too; 507 if there is no
+// room for the file.
+Outcome<NamelessFile> convert_domain_file(DomainFile file, MeshWish wish,
+                                          const std::filesystem::path& folder,
+                                          std::uint64_t most_bytes);
+
+// A GenerateMeshRequest that somebody sent, with the names in its domain. Problem: 400 if it is not
+// one, as far as its names tell.
+Outcome<SentDomain> take_request(std::string request, MeshWish wish);
 
 // The bytes that reading the file, and finding its faults, may take at most.
 std::uint64_t bytes_to_read(const DomainFile& file);

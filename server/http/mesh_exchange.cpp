@@ -115,11 +115,16 @@ Outcome<MeshWish> read_wish(const Query& query, ParameterUses uses, MeshExchange
     if (const auto writable = files::check_writable(mesh, wish->writing); !writable)
       return refuse(writable.error().message, "order");
   }
-  if (purpose == Purpose::kJob && wish->projection.wanted() && !wish->projection.to_metres)
-    return refuse(
-        "a job is kept without its projection, so its mesh is in metres: give to_metres, too",
-        "lonlat");
+  if ((purpose == Purpose::kJob || purpose == Purpose::kDomain) && wish->projection.wanted() &&
+      !wish->projection.to_metres)
+    return refuse("what comes back is kept without its projection, in metres: give to_metres, too",
+                  "lonlat");
   return wish;
+}
+
+// Of a body that is a GenerateMeshRequest.
+bool is_of_message(std::string_view content_type) {
+  return content_type == "application/x-protobuf" || content_type == "application/protobuf";
 }
 
 grpc::ByteBuffer buffer_of(std::string bytes) {
@@ -129,6 +134,11 @@ grpc::ByteBuffer buffer_of(std::string bytes) {
       owned);
   return {&slice, 1};
 }
+
+struct Begun {
+  SentDomain sent;
+  std::shared_ptr<files::MeshSpool> spool;
+};
 
 }  // namespace
 
@@ -152,6 +162,9 @@ MeshExchange::MeshExchange(ExchangeParts& parts, Purpose purpose, ParameterUses 
 Outcome<std::shared_ptr<MeshExchange>> MeshExchange::open(ExchangeParts& parts, Purpose purpose,
                                                           ParameterUses uses, const Query& query,
                                                           const std::string& word, Visit& visit) {
+  const bool is_message =
+      purpose == Purpose::kMesh && is_of_message(view(visit.headers[http::field::content_type]));
+  if (is_message) uses &= ~static_cast<ParameterUses>(ParameterUse::kDomain);
   auto wish = read_wish(query, uses, purpose, view(visit.headers[http::field::accept]));
   if (!wish) return tl::unexpected(wish.error());
   const std::string_view told = view(visit.headers[http::field::content_length]);
@@ -167,6 +180,7 @@ Outcome<std::shared_ptr<MeshExchange>> MeshExchange::open(ExchangeParts& parts, 
       new MeshExchange(parts, purpose, uses, std::move(*wish), query, visit, std::move(place)));
   (purpose == Purpose::kStored ? exchange->job_ : exchange->file_.name) =
       purpose == Purpose::kStored ? word : harmless_name(word);
+  exchange->is_message_ = is_message;
   if (length > parts.context.most_request_bytes) return tl::unexpected(exchange->too_large());
   return exchange;
 }
@@ -246,6 +260,7 @@ std::optional<Problem> MeshExchange::take_form() {
 
 void MeshExchange::body_ended() {
   if (purpose_ == Purpose::kStored) return begin_fetch();
+  if (is_message_) return take_request_in();
   if (is_form(content_type_))
     if (const auto problem = take_form()) return refuse(*problem);
   file_.extension =
@@ -260,7 +275,7 @@ void MeshExchange::body_ended() {
     file_.name = "domain" + file_.extension;
   else
     stem_ = std::filesystem::path(file_.name).stem().string();
-  const bool linted = purpose_ == Purpose::kLint;
+  const bool linted = purpose_ == Purpose::kLint || purpose_ == Purpose::kDomain;
   const std::uint64_t needed = linted ? bytes_to_lint(file_) : bytes_to_read(file_);
   std::shared_ptr<MemoryBudget::Reservation> memory;
   if (needed > kBytesOfShortFile) {
@@ -269,11 +284,8 @@ void MeshExchange::body_ended() {
     if (!reserved) return refuse(out_of_memory());
     memory = std::make_shared<MemoryBudget::Reservation>(std::move(*reserved));
   }
-  if (linted) return lint(std::move(memory));
-  struct Begun {
-    SentDomain sent;
-    std::shared_ptr<files::MeshSpool> spool;
-  };
+  if (purpose_ == Purpose::kLint) return lint(std::move(memory));
+  if (purpose_ == Purpose::kDomain) return convert(std::move(memory));
   work(
       memory != nullptr,
       [file = std::move(file_), wish = wish_, folder = parts_.folder, stop = stop_.get_token(),
@@ -281,6 +293,22 @@ void MeshExchange::body_ended() {
         auto sent = read_domain_file(std::move(file), std::move(wish), folder);
         if (!sent) return tl::unexpected(sent.error());
         if (!is_mesh) return Begun{std::move(*sent), nullptr};
+        auto spool = make_spool(folder, stop);
+        if (!spool) return tl::unexpected(spool.error());
+        return Begun{std::move(*sent), std::move(*spool)};
+      },
+      [](MeshExchange& self, Begun begun) {
+        self.begin(std::move(begun.sent), std::move(begun.spool));
+      });
+}
+
+void MeshExchange::take_request_in() {
+  work(
+      false,
+      [bytes = std::move(file_.bytes), wish = wish_, folder = parts_.folder,
+       stop = stop_.get_token()]() mutable -> Outcome<Begun> {
+        auto sent = take_request(std::move(bytes), std::move(wish));
+        if (!sent) return tl::unexpected(sent.error());
         auto spool = make_spool(folder, stop);
         if (!spool) return tl::unexpected(spool.error());
         return Begun{std::move(*sent), std::move(*spool)};
@@ -299,10 +327,22 @@ void MeshExchange::lint(std::shared_ptr<void> memory) {
         return lint_domain_file(std::move(file), std::move(wish), folder);
       },
       [](MeshExchange& self, const std::string& json) {
-        Answer answer{.head = make_page(http::status::ok, "application/json", json)};
-        answer.head.set(http::field::cache_control, "no-store");
-        if (const auto client = std::exchange(self.answers_to_, nullptr))
-          client->answer(std::move(answer));
+        self.answer({.head = make_page(http::status::ok, "application/json", json)});
+      });
+}
+
+void MeshExchange::convert(std::shared_ptr<void> memory) {
+  const bool is_long = memory != nullptr;
+  work(
+      is_long,
+      [file = std::move(file_), wish = wish_, folder = parts_.folder,
+       most = parts_.context.most_request_bytes, memory = std::move(memory)]() mutable {
+        return convert_domain_file(std::move(file), std::move(wish), folder, most);
+      },
+      [](MeshExchange& self, NamelessFile json) {
+        self.answer({.head = make_page(http::status::ok, "application/json", ""),
+                     .file = std::move(json.file),
+                     .file_bytes = json.bytes});
       });
 }
 
@@ -407,7 +447,7 @@ void MeshExchange::write_file() {
       is_large(),
       [spool = std::move(spool_), sent = sent_, to = wish_.to, folder = parts_.folder,
        stop = stop_.get_token()] { return write_mesh_file(*spool, *sent, to, folder, stop); },
-      [](MeshExchange& self, MeshFile file) { self.answer(std::move(file)); });
+      [](MeshExchange& self, MeshFile file) { self.answer_mesh(std::move(file)); });
 }
 
 void MeshExchange::cut(Answer& answer) const {
@@ -433,12 +473,11 @@ void MeshExchange::cut(Answer& answer) const {
   }
 }
 
-void MeshExchange::answer(MeshFile file) {
+void MeshExchange::answer_mesh(MeshFile file) {
   Answer answer{.head = make_page(http::status::ok, media_type(wish_.to), ""),
                 .file = std::move(file.file),
                 .file_bytes = file.bytes};
   Response& head = answer.head;
-  head.set(http::field::cache_control, "no-store");
   head.set(http::field::content_disposition,
            fmt::format("attachment; filename=\"{}{}\"", stem_, wish_.to));
   head.set("Weft-Vertices", std::to_string(summary_->vertices()));
@@ -449,10 +488,15 @@ void MeshExchange::answer(MeshFile file) {
   add_warnings(*summary_, *sent_, wish_.request.budget().max_triangles(), warnings);
   warn(std::move(warnings), head);
   if (purpose_ == Purpose::kStored) cut(answer);
-  if (const auto client = std::exchange(answers_to_, nullptr)) client->answer(std::move(answer));
+  this->answer(std::move(answer));
 }
 
 // ---- the end ----
+
+void MeshExchange::answer(Answer answer) {
+  answer.head.set(http::field::cache_control, "no-store");
+  if (const auto client = std::exchange(answers_to_, nullptr)) client->answer(std::move(answer));
+}
 
 void MeshExchange::refuse(const Problem& problem) {
   stop_.request_stop();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A request whose body is the file of a domain, or whose answer is that of a mesh, or both.
+// A request whose body is the file of a domain, or whose answer is that of a mesh, or both. For a
+// mesh, the body may be a GenerateMeshRequest instead, by its type application/x-protobuf.
 //
 // The body is read into memory, bounded as a message of gRPC is, and becomes the request of a call
 // within the process, which is admitted as every other. The chunks of a mesh go to nameless files,
@@ -32,6 +33,7 @@ class MeshExchange final : public Exchange,
     kMesh,    // a domain in, its mesh out; `word` is the name of the file, or empty
     kJob,     // a domain in, a job out
     kLint,    // a domain in, its faults out
+    kDomain,  // a domain in, its message and its faults out; `word` as of kMesh
     kStored,  // the mesh of a job out; `word` is its id
   };
 
@@ -57,7 +59,10 @@ class MeshExchange final : public Exchange,
   std::optional<Problem> take_form();
   // Whether work on the whole mesh takes long.
   bool is_large() const;
+  void take_request_in();
   void lint(std::shared_ptr<void> memory);
+  void convert(std::shared_ptr<void> memory);
+  void answer(Answer answer);
   void begin(SentDomain sent, std::shared_ptr<files::MeshSpool> spool);
   void begin_job(std::string mesh);
   void begin_fetch();
@@ -66,7 +71,7 @@ class MeshExchange final : public Exchange,
   void received(grpc::ByteBuffer message) override;
   void ended(const grpc::Status& status, const Metadata& trailers) override;
   void write_file();
-  void answer(MeshFile file);
+  void answer_mesh(MeshFile file);
   // Names the file of a stored mesh, and leaves of it the range that was asked for.
   void cut(Answer& answer) const;
   // Ends the call, if there is one.
@@ -85,6 +90,7 @@ class MeshExchange final : public Exchange,
   const std::string accept_;
   const std::string range_, if_range_;  // of a stored mesh
   std::string content_type_;
+  bool is_message_ = false;    // the body, not a file
   std::string job_;            // whose mesh it is
   std::string stem_ = "mesh";  // of the name of the file that is sent
   HeldBytes held_;

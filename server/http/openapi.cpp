@@ -50,14 +50,16 @@ Json file_json() {
   return {{"application/octet-stream", {{"schema", {{"type", "string"}, {"format", "binary"}}}}}};
 }
 
-// The file of a domain, or a form that has others besides.
-Json domain_json() {
+// The file of a domain, or a form that has others besides; for a mesh, it may be a
+// GenerateMeshRequest instead.
+Json body_json(const RouteText& route) {
   const Json file{{"type", "string"}, {"format", "binary"}};
   Json content = file_json();
   content["multipart/form-data"]["schema"] = {{"type", "object"},
                                               {"properties", {{"domain", file}}},
                                               {"required", {"domain"}},
                                               {"additionalProperties", file}};
+  if (route.is_mesh) content["application/x-protobuf"] = content["application/octet-stream"];
   return content;
 }
 
@@ -66,7 +68,7 @@ Json operation(const RouteText& route) {
   for (const Parameter* const parameter : parameters_for(route.uses))
     made["parameters"].push_back(parameter_json(*parameter));
   if ((route.uses & static_cast<ParameterUses>(ParameterUse::kDomain)) != 0)
-    made["requestBody"] = {{"required", true}, {"content", domain_json()}};
+    made["requestBody"] = {{"required", true}, {"content", body_json(route)}};
   const Json ok = route.is_mesh ? file_json() : Json{{"application/json", Json::object()}};
   const Json problem{
       {"application/problem+json", {{"schema", {{"$ref", "#/components/schemas/Problem"}}}}}};

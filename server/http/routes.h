@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What --http serves, for whoever has curl rather than gRPC:
+// What --http serves, for whoever has curl rather than gRPC, and the console's pages:
 //
 //   PUT, POST  /v1/mesh, /v1/mesh/NAME   the file of a domain in, that of its mesh out
+//   POST       /v1/domain/NAME           the file of a domain in, the domain and its faults out
 //   GET        /v1/info                  versions and limits
 //   GET        /, /v1/openapi.json       a description of all this, made of the tables
 #pragma once

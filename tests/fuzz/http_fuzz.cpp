@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a client of --http sends: the target of a request, then, after a line feed, the first bytes
-// of a file. Asserts:
+// of a file, or a message instead of one. Asserts:
 //   path       a target that is decoded is UTF-8 without control characters, not longer than it was
 //   wish       parameters are taken, or refused with a sentence and a status of 400, 406 or 415
 //   request    what is taken can be sent, and read again
+//   names      the names of a message that is taken are those that protobuf finds in it
 //   format     the format of the file is one that is read here, or none
 //   form       the file, as a form, has parts with names within it, or is refused with a sentence
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <string>
 #include <string_view>
 
+#include "server/http/domain_file.h"
 #include "server/http/form.h"
 #include "server/http/formats.h"
 #include "server/http/mesh_wish.h"
@@ -42,6 +44,16 @@ void judge(const std::uint8_t* data, std::size_t size) {
   if (parts)
     for (const FormPart& part : *parts)
       must(!part.name.empty() && part.body.size() < file.size(), "form", part.name);
+  const auto taken = take_request(std::string(file), {});
+  v1::GenerateMeshRequest sent;
+  if (taken && sent.ParseFromArray(file.data(), static_cast<int>(file.size()))) {
+    files::NameReader names("");
+    for (const v1::Name& name : sent.domain().marker_names())
+      names.add(files::NameKind::kMarker, name.id(), name.name());
+    for (const v1::Name& name : sent.domain().region_names())
+      names.add(files::NameKind::kRegion, name.id(), name.name());
+    must(taken->domain.names == names.take(), "names", std::string(file));
+  }
   if (!target) return;
   auto wish = read_wish(target->query, ~ParameterUses{});
   if (!wish) {

@@ -387,6 +387,112 @@ TEST(HttpLint, FindsFaults) {
   problem_in(send(server, "POST", "/v1/lint?from=poly", "x"), 400, "UNREADABLE_FILE");
 }
 
+v1::Domain domain_in(const Json& answer) {
+  const auto bytes = from_base64(answer.value("domain", ""));
+  EXPECT_TRUE(bytes) << answer;
+  v1::Domain domain;
+  EXPECT_TRUE(domain.ParseFromString(bytes.value_or("x")));
+  return domain;
+}
+
+TEST(HttpDomain, ComesWithItsFaults) {
+  ConsoleServer server(stream, with_http());
+  const std::string yard =
+      "5 2 0 0\n1 0 0\n2 40 0\n3 40 40\n4 0 40\n5 0 0.01\n4 1\n1 1 2 3\n2 2 3 0\n3 3 4 0\n"
+      "4 4 5 0\n0\n";
+  const WebResponse found = send(server, "POST", "/v1/domain/my%20yard.poly", yard);
+  ASSERT_EQ(found.status, 200) << found.body;
+  EXPECT_EQ(found.header("content-type"), "application/json");
+  EXPECT_FALSE(has(found.body, "/proc/"));
+  const Json answer = Json::parse(found.body);
+  EXPECT_EQ(answer["file"], "my_yard.poly");
+  EXPECT_EQ(answer["counts"]["gap"], 1) << answer;
+  const v1::Domain domain = domain_in(answer);
+  EXPECT_EQ(domain.points_size(), 10);
+  EXPECT_EQ(domain.segment_markers(0), 3);
+  EXPECT_EQ(domain.fill(), v1::FILL_SEEDS);
+  const Json ring = Json::parse(send(server, "POST", "/v1/domain?names=region=1:sea",
+                                     R"({"type":"Polygon","coordinates":[[[0,0],[1,0],[1,1]]]})")
+                                    .body);
+  ASSERT_EQ(ring["findings"].size(), 1u) << ring;
+  EXPECT_EQ(ring["findings"][0]["kind"], "warning") << ring;
+  EXPECT_EQ(ring["findings"][0]["warning"], "open-ring");
+  EXPECT_EQ(domain_in(ring).region_names(0).name(), "sea");
+  const Json bad =
+      problem_in(send(server, "POST", "/v1/domain/b.poly", "3 2 0 0\n1 0 0\n2 1 zero\n3 0 1\n"),
+                 400, "UNREADABLE_FILE");
+  EXPECT_EQ(bad["errors"][0]["place"], "b.poly:3:5") << bad;
+  problem_in(send(server, "POST", "/v1/domain/a.png", "\x89PNG"), 400, "UNREADABLE_FILE");
+}
+
+TEST(HttpDomain, IsAnAnswerOfAnySize) {
+  ConsoleServer server(stream, with_http());
+  std::string line = "LINESTRING (0 0";  // several blocks of base64, and the last has padding
+  for (int i = 1; i < 10000; ++i) line += "," + std::to_string(i) + " " + std::to_string(i % 7);
+  const v1::Domain domain =
+      domain_in(Json::parse(send(server, "POST", "/v1/domain", line + ")").body));
+  ASSERT_EQ(domain.points_size(), 20000);
+  EXPECT_EQ(domain.points(19999), 9999 % 7);
+  ServerOptions options = with_http();
+  options.service.limits.max_request_bytes = line.size() + 1;
+  ConsoleServer small(stream, options);
+  problem_in(send(small, "POST", "/v1/domain", line + ")"), 413, "LIMIT_EXCEEDED");
+}
+
+TEST(HttpDomain, IsInThePlane) {
+  ConsoleServer server(stream, with_http());
+  const std::string coast =
+      R"({"type":"Polygon","coordinates":[[[-74,40],[-73,40],[-73,41],[-74,41],[-74,40]]]})";
+  const Json degrees = Json::parse(send(server, "POST", "/v1/domain", coast).body);
+  EXPECT_EQ(domain_in(degrees).points(0), -74);
+  problem_in(send(server, "POST", "/v1/domain?lonlat", coast), 400, "BAD_OPTION");
+  const WebResponse found = send(server, "POST", "/v1/domain?crs=EPSG:3857&to_metres", coast);
+  ASSERT_EQ(found.status, 200) << found.body;
+  const Json metres = Json::parse(found.body);
+  EXPECT_NEAR(domain_in(metres).points(0), -8237642, 1);
+  ASSERT_EQ(metres["findings"].size(), 2u) << metres;
+  EXPECT_EQ(metres["findings"][0]["warning"], "coordinates");  // lengths are stretched
+  EXPECT_EQ(metres["counts"]["warning"], metres["faults"]);
+}
+
+std::string request_of_square() {
+  v1::GenerateMeshRequest request;
+  for (const double value : {0, 0, 1, 0, 1, 1, 0, 1}) request.mutable_domain()->add_points(value);
+  for (const unsigned end : {0, 1, 1, 2, 2, 3, 3, 0}) request.mutable_domain()->add_segments(end);
+  for (const int marker : {2, 0, 0, 0}) request.mutable_domain()->add_segment_markers(marker);
+  v1::Name& name = *request.mutable_domain()->add_marker_names();
+  name.set_id(2);
+  name.set_name("inlet");
+  request.mutable_size()->set_constant(0.01);
+  return request.SerializeAsString();
+}
+
+TEST(HttpMesh, ComesOfARequestOfTheProtocol) {
+  ConsoleServer server(stream, with_http());
+  const Headers type = {{"Content-Type", "application/x-protobuf"}};
+  const WebResponse made =
+      send(server, "POST", "/v1/mesh/square.bin?format=msh", request_of_square(), type);
+  ASSERT_EQ(made.status, 200) << made.body;
+  const files::Mesh mesh = mesh_in(made, ".msh");
+  EXPECT_EQ(std::to_string(mesh.triangles.size() / 3), made.header("weft-triangles"));
+  EXPECT_EQ(mesh.names.markers, (files::NameTable{{2, "inlet"}}));
+  EXPECT_EQ(
+      send(server, "POST", "/v1/mesh?format=14&open_boundary=inlet", request_of_square(), type)
+          .status,
+      200);
+  problem_in(
+      send(server, "POST", "/v1/mesh?format=14&open_boundary=outlet", request_of_square(), type),
+      400, "BAD_OPTION");
+  problem_in(send(server, "POST", "/v1/mesh?edge=1", request_of_square(), type), 400, "BAD_OPTION");
+  problem_in(send(server, "POST", "/v1/mesh", "\x0a\x63", type), 400, "MALFORMED_REQUEST");
+  v1::GenerateMeshRequest bad;
+  bad.ParseFromString(request_of_square());
+  bad.mutable_size()->set_constant(-1);
+  const Json problem = problem_in(send(server, "POST", "/v1/mesh", bad.SerializeAsString(), type),
+                                  400, "BAD_SIZE_VALUE");
+  EXPECT_EQ(problem["errors"][0]["field"], "size.constant") << problem;
+}
+
 TEST(HttpTokens, AreAskedForBeforeAFileIsRead) {
   const files::TempFolder folder;
   ServerOptions options = with_http();
@@ -461,7 +567,15 @@ TEST(HttpDoor, LeadsToNoCallsAndNoPages) {
   EXPECT_NE(server.address(), server.http_address());
   problem_in(send(server, "GET", "/metrics"), 404, "NOT_FOUND");
   problem_in(send(server, "POST", kServerInfo, framed("")), 404, "NOT_FOUND");
-  EXPECT_EQ(get(server.address(), "/v1/info").status, 404);
+}
+
+TEST(HttpDoor, IsThatOfTheConsoleInAnyCase) {
+  ConsoleServer server(stream);
+  WebConnection client(server.address());
+  client.send(request("POST", "/v1/domain", {}, kSquare));
+  EXPECT_EQ(client.read_response().status, 200);
+  client.send(request("POST", "/v1/domain", {{"Origin", "https://evil.example"}}, kSquare));
+  EXPECT_EQ(client.read_response().status, 403);
 }
 
 TEST(HttpDoor, IsNotOpenedForOthersUnencrypted) {
