@@ -72,3 +72,9 @@ test("a request is a program in Python", () => {
   ])
     expect(pythonProgram(coast)).toContain(`\n        ${line}\n`);
 });
+
+test("a domain that was projected is projected again", () => {
+  const file = { name: "coast.geojson", inMetres: true };
+  expect(shellCommand(make({}), file)).toBe("weft mesh coast.geojson -o mesh.vtu \\\n  --to-metres");
+  expect(pythonProgram(make({}), file)).toContain("to_metres=True");
+});

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 import { expect, test } from "vitest";
-import { readWkt } from "../src/domain/wkt";
+import { domainOf } from "../src/domain/examples";
+import { segmentEnds } from "../src/domain/outline";
 import { Fill, Measure, Placement, type GenerateMeshRequest } from "../src/gen/weft/v1/mesh_service_pb";
 import { pythonProgram, shellCommand } from "../src/jobs/commands";
 import { emptyForm, fieldOf, isRequest, requestOf, type FormText } from "../src/request/form";
 import { boundFunction, boundLogarithms, boundsOf } from "../src/view/bounds";
 
-const domain = readWkt("a b.wkt", "POLYGON ((0 0, 1 0, 1 1, 0 0))");
+const domain = domainOf([{ rings: [[[0, 0], [1, 0], [1, 1]]] }]);
+const file = { name: "a b.wkt", inMetres: false };
 
 function request(change: Partial<FormText>) {
   const made = requestOf({ ...emptyForm, ...change }, domain);
@@ -53,11 +55,11 @@ test("the rest of the form reaches the request; what is empty is not set", () =>
 test("a gradation within the domain is asked for and shown beside a gradation alone", () => {
   const within = (gradation: string) => request({ size: "1", gradation, gradationWithin: true });
   expect(within("0.2").size).toMatchObject({ gradation: 0.2, gradationWithin: true });
-  expect(shellCommand(within("0.2"), domain.name)).toContain("--gradation 0.2 \\\n  --gradation-within");
-  expect(pythonProgram(within("0.2"), domain.name)).toContain("gradation_within=True");
+  expect(shellCommand(within("0.2"), file)).toContain("--gradation 0.2 \\\n  --gradation-within");
+  expect(pythonProgram(within("0.2"), file)).toContain("gradation_within=True");
   for (const none of ["", "0"]) {
     expect(within(none).size?.gradationWithin).toBe(false);
-    expect(shellCommand(within(none), domain.name)).not.toContain("gradation");
+    expect(shellCommand(within(none), file)).not.toContain("gradation");
   }
   expect(request({ size: "1", gradation: "0.2" }).size?.gradationWithin).toBe(false);
 });
@@ -79,14 +81,14 @@ test("the server's paths lead to the fields of the page", () => {
 
 test("the command of a whole request names its file and its fields", () => {
   const made = request({ size: "0.1*distance" });
-  expect(shellCommand(made, domain.name)).toContain("weft mesh 'a b.wkt' -o mesh.vtu");
-  expect(shellCommand(made, domain.name)).toContain("--edge '0.1*distance' \\\n  --field distance=distance \\\n");
-  expect(pythonProgram(made, domain.name)).toContain('fields={"distance": weft.distance()},');
-  expect(pythonProgram(made, domain.name)).toContain('"a b.wkt",');
+  expect(shellCommand(made, file)).toContain("weft mesh 'a b.wkt' -o mesh.vtu");
+  expect(shellCommand(made, file)).toContain("--edge '0.1*distance' \\\n  --field distance=distance \\\n");
+  expect(pythonProgram(made, file)).toContain('fields={"distance": weft.distance()},');
+  expect(pythonProgram(made, file)).toContain('"a b.wkt",');
 });
 
 test("bounds on areas are known if they are numbers, or expressions that the page can evaluate", () => {
-  const boundsFor = (change: Partial<FormText>) => boundsOf(request(change), domain);
+  const boundsFor = (change: Partial<FormText>) => boundsOf(request(change), segmentEnds(domain));
   expect(boundsFor({ sizeKind: "edge", size: "2" })?.everywhere).toBeCloseTo(Math.sqrt(3));
   for (const size of ["x", "distance"]) expect(boundsFor({ size }), size).toBeDefined();
   expect(boundsFor({ size: "width" })).toBeUndefined();
@@ -95,9 +97,9 @@ test("bounds on areas are known if they are numbers, or expressions that the pag
 });
 
 test("a bound is that of the place and of the region, whichever is lower", () => {
-  const square = readWkt("square.wkt", "POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0))");
+  const square = domainOf([{ rings: [[[0, 0], [4, 0], [4, 4], [0, 4]]] }]);
   const bound = (size: Partial<FormText>) => {
-    const { everywhere } = boundsOf(requestOf({ ...emptyForm, sizeKind: "area", ...size }, square) as GenerateMeshRequest, square)!;
+    const { everywhere } = boundsOf(requestOf({ ...emptyForm, sizeKind: "area", ...size }, square) as GenerateMeshRequest, segmentEnds(square))!;
     return boundFunction({ everywhere, regions: new Map([[7, 0.5]]) });
   };
   expect(bound({ size: "x + 2*y" })(1, 2, 0)).toBe(5);

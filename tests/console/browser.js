@@ -5,9 +5,11 @@
 //   const browser = await openBrowser();
 //   const page = await openPage(test, browser, server.url + "/jobs");
 import { existsSync } from "node:fs";
+import { readdir } from "node:fs/promises";
+import { join } from "node:path";
 import { PNG } from "pngjs";
 import puppeteer from "puppeteer-core";
-import { atEnd, until } from "./weftd.js";
+import { atEnd, folderFor, until } from "./weftd.js";
 
 const patience = 180_000; // ms: software draws a mesh in up to 60 s on a loaded machine
 const size = { width: 1280, height: 720, deviceScaleFactor: 1 };
@@ -92,6 +94,25 @@ export async function textMatches(page, selector, pattern, { timeout = patience 
 export async function press(page, name) {
   const node = await page.waitForSelector(`aria/${name}[role="button"]`);
   await node.click();
+}
+
+// Downloads the mesh in a format, from the page; returns the path of the file.
+export async function downloaded(test, page, format) {
+  const folder = await folderFor(test);
+  const session = await page.createCDPSession();
+  await session.send("Browser.setDownloadBehavior", {
+    behavior: "allow",
+    downloadPath: folder,
+    browserContextId: page.browserContext().id,
+  });
+  await page.waitForSelector(`.downloads option[value="${format}"]`);
+  await page.select(".downloads select", format);
+  await press(page, "Download");
+  const [name] = await until("the file is there", async () => {
+    const names = await readdir(folder);
+    return names.length > 0 && !names.some((each) => each.endsWith(".crdownload")) && names;
+  });
+  return join(folder, name);
 }
 
 async function pixelsOf(page, clip) {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page that makes meshes, in a real browser against a real weftd.
 import assert from "node:assert/strict";
-import { readFile } from "node:fs/promises";
-import { join } from "node:path";
+import { execFileSync } from "node:child_process";
+import { readFile, writeFile } from "node:fs/promises";
+import { basename, join } from "node:path";
 import { after, before, test } from "node:test";
-import { areDrawn, colourAt, isBack, middleOf, openBrowser, openPage, press, settled, textMatches } from "./browser.js";
+import { areDrawn, colourAt, downloaded, isBack, middleOf, openBrowser, openPage, press, settled, textMatches } from "./browser.js";
 import { looksLike } from "./pictures.js";
-import { atEnd, folderFor, models, until, Weftd } from "./weftd.js";
+import { atEnd, folderFor, models, until, weft, Weftd } from "./weftd.js";
 
 let browser;
 before(async () => (browser = await openBrowser()));
@@ -114,7 +115,7 @@ test("names of a dropped file are asked for, and stand in the legend", async (t)
     feature(8, { region: 7, region_name: "stone" }),
   ];
   await drop(page, "two.geojson", JSON.stringify({ type: "FeatureCollection", features }));
-  await textMatches(page, "section [role=status]", /a name of region 7 is left out: the first is “solid”/);
+  await textMatches(page, "section [role=status]", /a name of region 7 is left out: the first is 'solid'/);
   await press(page, "Mesh");
   await phase(page, "done");
   await page.select(".view-tools select", "region");
@@ -124,12 +125,69 @@ test("names of a dropped file are asked for, and stand in the legend", async (t)
   await textMatches(page, ".picked", /Region\s+7 solid/);
 });
 
+test("a drawing of arcs is meshed, and its mesh is saved as the command line writes it", async (t) => {
+  const { page } = await meshPage(t);
+  const circle = [0, "SECTION", 2, "ENTITIES", 0, "CIRCLE", 8, 0, 10, 3, 20, 2, 40, 1.5, 0, "ENDSEC", 0, "EOF"].join("\n");
+  await drop(page, "disc.dxf", circle);
+  await textMatches(page, ".domain-facts", /disc\.dxf[^]*3 × 3/);
+  await fill(page, "#size", "0.1");
+  await press(page, "Mesh");
+  await phase(page, "done");
+  const file = await downloaded(t, page, "msh");
+  assert.equal(basename(file), "disc.msh");
+  const drawing = join(await folderFor(t), "disc.dxf");
+  await writeFile(drawing, circle);
+  await weft(["mesh", drawing, "--edge", "0.1", "--min-angle", "28", "-q", "-o", `${drawing}.msh`]);
+  assert.deepEqual(await readFile(file), await readFile(`${drawing}.msh`));
+});
+
+test("a table is meshed, and what is odd in a file is said with what to do", async (t) => {
+  const { page } = await meshPage(t);
+  await drop(page, "yard.csv", "0,0\n4,0\n4,4\n0,4\n");
+  await textMatches(page, ".domain-facts", /yard\.csv[^]*4 points, 4 segments/);
+  assert.equal(await page.$(".findings"), null);
+  await press(page, "Mesh");
+  await phase(page, "done");
+  const gap = "5 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n5 0 0.001\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 5\n0\n";
+  await drop(page, "gap.poly", gap);
+  await textMatches(page, ".findings", /a gap of 0\.001 [^]*line 8[^]*line 11; --snap/);
+});
+
+test("a shapefile in an archive is meshed", async (t) => {
+  const { page } = await meshPage(t);
+  const archive = join(await folderFor(t), "island.zip");
+  execFileSync("/usr/bin/python3", ["-c", `
+import struct, sys, zipfile
+ring = [(0, 0), (0, 4), (4, 4), (4, 0), (0, 0)]
+box = struct.pack("<4d", 0, 0, 4, 4)
+shape = struct.pack("<i", 5) + box + struct.pack("<3i", 1, 5, 0) + b"".join(struct.pack("<2d", *p) for p in ring)
+record = struct.pack(">2i", 1, len(shape) // 2) + shape
+head = struct.pack(">7i", 9994, 0, 0, 0, 0, 0, (100 + len(record)) // 2) + struct.pack("<2i", 1000, 5) + box + bytes(32)
+with zipfile.ZipFile(sys.argv[1], "w", zipfile.ZIP_DEFLATED) as out:
+    out.writestr("data/island.shp", head + record)
+`, archive]);
+  const input = await page.$("input[type=file]");
+  await input.uploadFile(archive);
+  await textMatches(page, ".domain-facts", /island\.zip[^]*4 points, 4 segments, 4 × 4/);
+  await press(page, "Mesh");
+  await phase(page, "done");
+});
+
+test("a domain in degrees is projected to metres if that is asked for", async (t) => {
+  const { page } = await meshPage(t);
+  await drop(page, "coast.geojson", await readFile(join(models, "us-east-coast.geojson"), "utf8"));
+  await textMatches(page, ".findings", /longitudes and latitudes/);
+  await press(page, "Project it to metres");
+  await textMatches(page, ".domain-facts", /coast\.geojson[^]*[\d.e,]{4,} × /);
+  await page.waitForFunction(() => !document.body.innerText.includes("Project it to metres"));
+});
+
 for (const [name, text, complaint] of [
-  ["broken.poly", "3 2 0 0\n1 0 0\n2 1 zero\n3 0 1\n", /broken\.poly[^]*line 3/],
+  ["broken.poly", "3 2 0 0\n1 0 0\n2 1 zero\n3 0 1\n", /broken\.poly:3:5: expected the y coordinate/],
   ["picture.png", "\x89PNG", /picture\.png/],
 ])
   test(`a file that is no domain is refused with its fault: ${name}`, async (t) => {
-    const { page } = await meshPage(t);
+    const { page } = await meshPage(t, { expected: [/status of 400/] });
     await drop(page, name, text);
     await textMatches(page, "section [role=alert]", complaint);
     await textMatches(page, ".domain-facts", /plate\.geojson/); // what was there stays

@@ -53,7 +53,7 @@ def by(request, monkeypatch):
 
 @pytest.mark.filterwarnings("ignore::weft.WeftWarning")
 @pytest.mark.parametrize("name", EXPECTED)
-def test_a_file_is_read_as_by_the_command_line_and_the_console(by, name):
+def test_a_file_is_read_as_by_the_command_line(by, name):
     if EXPECTED[name] is None:
         with pytest.raises(weft.DomainError):
             weft.Domain.read(FILES / name)
@@ -63,7 +63,7 @@ def test_a_file_is_read_as_by_the_command_line_and_the_console(by, name):
 
 
 @pytest.mark.parametrize("given", json.loads((FILES / "degrees.json").read_text()), ids=str)
-def test_a_polygon_is_in_degrees_as_for_the_command_line_and_the_console(recwarn, given):
+def test_a_polygon_is_in_degrees_as_for_the_command_line(recwarn, given):
     polygon = {"type": "Polygon", "coordinates": [[*given["ring"], given["ring"][0]]]}
     if "crs" in given:
         polygon["crs"] = {"type": "name", "properties": {"name": given["crs"]}}

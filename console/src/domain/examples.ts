@@ -1,17 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-// Domains that come with the console, as files in GeoJSON, each with a size that suits it.
+// Domains that come with the console, each with a size that suits it.
+import { create } from "@bufbuild/protobuf";
+import { AreaSchema, DomainSchema, Fill, type Domain } from "../gen/weft/v1/mesh_service_pb";
 import type { FormText } from "../request/form";
-import type { Point } from "./planar-domain";
+import type { Point } from "./outline";
 
 export interface Example {
   name: string;
-  file: string; // its name
-  text: string;
+  file: string; // its name, if it is saved
+  polygons: Polygon[];
   form: Partial<FormText>;
 }
 
-// Each polygon is rings without their last points; region 0 is none.
-export function geoJsonOf(polygons: { rings: readonly (readonly Point[])[]; region?: number }[]): string {
+export interface Polygon {
+  rings: readonly (readonly Point[])[]; // without their last points
+  region?: number; // not 0
+}
+
+export function domainOf(polygons: Polygon[]): Domain {
+  const domain = create(DomainSchema, { fill: Fill.UNION });
+  polygons.forEach(({ rings, region }, i) => {
+    for (const ring of rings) {
+      const first = domain.points.length / 2;
+      domain.points.push(...ring.flat());
+      domain.segments.push(...ring.flatMap((_, k) => [first + k, first + ((k + 1) % ring.length)]));
+      domain.segmentAreas.push(...ring.map(() => i + 1));
+    }
+    domain.areas.push(create(AreaSchema, { region }));
+  });
+  return domain;
+}
+
+// The same as a file.
+export function geoJsonOf(polygons: Polygon[]): string {
   const features = polygons.map(({ rings, region }) => ({
     type: "Feature",
     properties: region ? { region } : {},
@@ -90,12 +111,7 @@ function gear() {
 
 const square = () => [{ rings: [[[0, 0], [1, 0], [1, 1], [0, 1]] as Point[]] }];
 
-const make = (name: string, file: string, polygons: Parameters<typeof geoJsonOf>[0], form: Partial<FormText>): Example => ({
-  name,
-  file,
-  text: geoJsonOf(polygons),
-  form,
-});
+const make = (name: string, file: string, polygons: Polygon[], form: Partial<FormText>): Example => ({ name, file, polygons, form });
 
 export const examples: readonly Example[] = [
   make("Plate", "plate.geojson", plate(), { sizeKind: "edge", size: "0.12", minAngle: "28" }),

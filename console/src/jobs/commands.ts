@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A request as what a person would type to ask for it again. The server keeps no arrays of a request,
 // so the domain's file, and those of rasters and fields, are names in capitals to be filled in; if
-// `domain`, the name of the domain's file, is given, the request is whole.
+// the domain's file is given, the request is whole.
 import { getOption, hasOption, type DescField } from "@bufbuild/protobuf";
 import { reflect, type ReflectMessage } from "@bufbuild/protobuf/reflect";
 import {
@@ -12,6 +12,11 @@ import {
   type Layers,
   type NamedField,
 } from "../gen/weft/v1/mesh_service_pb";
+
+export interface DomainFile {
+  name: string;
+  inMetres: boolean; // projected from longitude and latitude
+}
 
 type Pair = [number, number];
 type Value = string | number | boolean | number[] | Pair[];
@@ -36,8 +41,9 @@ function namedOptions(message: ReflectMessage): [string, Value][] {
   });
 }
 
-function optionsOf(request: GenerateMeshRequest): [string, Value][] {
+function optionsOf(request: GenerateMeshRequest, domain: DomainFile | undefined): [string, Value][] {
   const options = namedOptions(reflect(GenerateMeshRequestSchema, request));
+  if (domain?.inMetres) options.push(["to_metres", true]);
   const { keep, periodic = [] } = request.quality ?? {};
   if (keep) options.push(["keep", keep.markers.length > 0 ? keep.markers : "all"]);
   if (periodic.length > 0) options.push(["periodic", periodic.map(({ from, to }): Pair => [from, to])]);
@@ -86,22 +92,22 @@ function kindOf({ kind }: NamedField, whole: boolean, language: 0 | 1): string {
   return kinds[kind.case][language];
 }
 
-export function shellCommand(request: GenerateMeshRequest, domain?: string): string {
-  const words = [`weft mesh ${inShell(domain ?? "DOMAIN.poly")} -o mesh.vtu`];
+export function shellCommand(request: GenerateMeshRequest, domain?: DomainFile): string {
+  const words = [`weft mesh ${inShell(domain?.name ?? "DOMAIN.poly")} -o mesh.vtu`];
   const size = sizeOf(request, "SIZES.asc");
   if (size) words.push(`--${size[0]} ${inShell(String(size[1]))}`);
   for (const field of request.size?.fields ?? [])
     words.push(`--field ${inShell(`${field.name}=${kindOf(field, domain !== undefined, 0)}`)}`);
   for (const layers of request.quality?.layers ?? []) words.push(`--layers ${layers.marker}:${rowsText(layers, ",")}`);
-  for (const [name, value] of optionsOf(request)) {
+  for (const [name, value] of optionsOf(request, domain)) {
     const flag = `--${name.replaceAll("_", "-")}`;
     words.push(value === true ? flag : `${flag} ${valueInShell(value)}`);
   }
   return words.join(" \\\n  ");
 }
 
-export function pythonProgram(request: GenerateMeshRequest, domain?: string): string {
-  const given = [inPython(domain ?? "DOMAIN.poly")];
+export function pythonProgram(request: GenerateMeshRequest, domain?: DomainFile): string {
+  const given = [inPython(domain?.name ?? "DOMAIN.poly")];
   const size = sizeOf(request, { program: "weft.Raster(VALUES, ORIGIN, SPACING)" });
   if (size) given.push(`${size[0]}=${typeof size[1] === "object" ? size[1].program : inPython(size[1])}`);
   const fields = request.size?.fields ?? [];
@@ -114,7 +120,7 @@ export function pythonProgram(request: GenerateMeshRequest, domain?: string): st
     const items = layers.map((each) => `${each.marker}: weft.Layers(${rowsText(each, ", ")})`);
     given.push(`layers={${items.join(", ")}}`);
   }
-  for (const [name, value] of optionsOf(request)) given.push(`${name}=${inPython(value)}`);
+  for (const [name, value] of optionsOf(request, domain)) given.push(`${name}=${inPython(value)}`);
   return `import weft
 
 with weft.Client() as client:

@@ -2,7 +2,7 @@
 // The picture of a mesh that the server keeps, drawn as its chunks come.
 import { useEffect } from "preact/hooks";
 import { explain } from "../client";
-import { namesOf } from "../domain/names";
+import { regionNamesOf } from "../domain/names";
 import type { Job } from "../gen/weft/v1/job_service_pb";
 import { useMeshRun, useRunState } from "../view/mesh-run";
 import { MeshView } from "../view/mesh-view";
@@ -14,7 +14,7 @@ export function StoredMeshView({ job, label }: { job: Job; label: string }) {
   useEffect(start, [run, job.id]);
   return (
     <div class="stored-mesh" role="group" aria-label={label}>
-      <MeshView run={run} regionNames={namesOf(summary?.request).regions} />
+      <MeshView run={run} regionNames={regionNamesOf(summary?.request)} />
       {phase === "running" && (
         <progress max={Number(job.summary?.triangles ?? 1n)} value={triangles} aria-label="Received" />
       )}

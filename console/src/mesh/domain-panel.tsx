@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the domain comes from: an example, a file, or a drawing.
-import { useRef } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { examples, type Example } from "../domain/examples";
-import { boxOf, type PlanarDomain } from "../domain/planar-domain";
-import { extensions } from "../domain/read-domain";
+import type { Finding } from "../domain/domain-file";
+import { boxOf } from "../domain/outline";
+import type { Domain } from "../gen/weft/v1/mesh_service_pb";
+import { keep } from "../download/downloads";
+import { choicesOf } from "../http";
 import { count, figure } from "../text";
 
 interface Props {
-  domain: PlanarDomain;
+  name: string; // of the file that it is, or could be, in
+  domain: Domain;
   text: string | undefined; // of the file, if it is not the person's own
   example: string | undefined; // its name
+  findings: Finding[];
+  faults: number; // of which the findings are some
+  project: (() => void) | undefined; // from longitude and latitude
+  reading: string | undefined; // the name of a file that is on its way
   problem: string | undefined;
   drawing: boolean;
   onExample: (example: Example) => void;
@@ -17,16 +25,27 @@ interface Props {
   onDraw: () => void;
 }
 
-function save(name: string, text: string): void {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([text]));
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+const shown = 6; // findings
+
+function Findings({ findings, faults, project }: Pick<Props, "findings" | "faults" | "project">) {
+  const some = findings.slice(0, shown);
+  return (
+    <div class="problem findings" role="status">
+      <ul>
+        {some.map(({ text, remedy }) => <li>{remedy ? `${text}; ${remedy}` : text}</li>)}
+        {faults > some.length && <li>{count(faults - some.length)} more: <code>weft lint</code> lists them</li>}
+      </ul>
+      {project && <button type="button" onClick={project}>Project it to metres</button>}
+    </div>
+  );
 }
 
-export function DomainPanel({ domain, text, example, problem, drawing, onExample, onFile, onDraw }: Props) {
+export function DomainPanel({ name, domain, text, example, findings, faults, project, reading, problem, drawing, onExample, onFile, onDraw }: Props) {
   const input = useRef<HTMLInputElement>(null);
+  const [accepted, setAccepted] = useState("");
+  useEffect(() => {
+    choicesOf("from").then((formats) => setAccepted(formats.map((format) => `.${format}`).join(",")), () => {});
+  }, []);
   const box = boxOf(domain);
   const size = box && `${figure(box[2] - box[0])} × ${figure(box[3] - box[1])}`;
   return (
@@ -52,7 +71,7 @@ export function DomainPanel({ domain, text, example, problem, drawing, onExample
           class="hidden"
           tabIndex={-1}
           aria-label="Domain file"
-          accept={extensions.join(",")}
+          accept={accepted}
           onChange={(event) => {
             const file = event.currentTarget.files?.[0];
             event.currentTarget.value = "";
@@ -60,6 +79,7 @@ export function DomainPanel({ domain, text, example, problem, drawing, onExample
           }}
         />
       </div>
+      {reading && <p class="faint" role="status">The server reads {reading}…</p>}
       {problem && (
         <p class="problem" role="alert">
           {problem}
@@ -67,17 +87,17 @@ export function DomainPanel({ domain, text, example, problem, drawing, onExample
       )}
       {!drawing && (
         <p class="faint domain-facts">
-          <strong>{domain.name}</strong>{" "}
+          <strong>{name}</strong>{" "}
           {text !== undefined && (
-            <button type="button" class="link" onClick={() => save(domain.name, text)}>
+            <button type="button" class="link" onClick={() => keep(new Blob([text]), name)}>
               save
             </button>
           )}
           <br />
-          {count(domain.points.length / 2)} points, {count(domain.markers.length)} segments{size && `, ${size}`}
+          {count(domain.points.length / 2)} points, {count(domain.segments.length / 2)} segments{size && `, ${size}`}
         </p>
       )}
-      {!drawing && domain.warnings.length > 0 && <p class="problem" role="status">{domain.warnings.join("; ")}</p>}
+      {!drawing && findings.length > 0 && <Findings findings={findings} faults={faults} project={project} />}
     </section>
   );
 }

@@ -2,12 +2,12 @@
 // The first page: a domain, what its mesh must satisfy, and the mesh as it comes.
 import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import { explain, jobs } from "../client";
-import { readFile } from "../domain/domain-file";
-import { examples, geoJsonOf, type Example } from "../domain/examples";
-import { readGeoJson } from "../domain/geojson";
-import { namesOf } from "../domain/names";
-import { boxOf, segmentEnds, type PlanarDomain } from "../domain/planar-domain";
-import type { GenerateMeshRequest } from "../gen/weft/v1/mesh_service_pb";
+import { readFile, type Finding } from "../domain/domain-file";
+import { domainOf, examples, geoJsonOf, type Example, type Polygon } from "../domain/examples";
+import { regionNamesOf } from "../domain/names";
+import { boxOf, segmentEnds } from "../domain/outline";
+import { Downloads } from "../download/downloads";
+import type { Domain, GenerateMeshRequest } from "../gen/weft/v1/mesh_service_pb";
 import { pythonProgram, shellCommand } from "../jobs/commands";
 import { Copy } from "../jobs/copy";
 import { DomainPanel } from "../mesh/domain-panel";
@@ -30,12 +30,20 @@ import { Sketch } from "../view/sketch";
 import "../mesh/mesh.css";
 
 interface Source {
-  domain: PlanarDomain;
+  name: string; // of the file that it is, or could be, in
+  domain: Domain;
   text: string | undefined; // of its file, if the page made it
   example: string | undefined;
+  inMetres: boolean; // projected from longitude and latitude
+  findings: Finding[];
+  faults: number;
+  project: (() => void) | undefined;
 }
 
-const sourceOf = ({ name, file, text }: Example): Source => ({ domain: readGeoJson(file, text), text, example: name });
+const own = (name: string, polygons: Polygon[], example?: string): Source => ({
+  name, domain: domainOf(polygons), text: geoJsonOf(polygons), example, inMetres: false, findings: [], faults: 0, project: undefined,
+});
+const sourceOf = ({ name, file, polygons }: Example): Source => own(file, polygons, name);
 
 // What a domain of one's own begins with, beside a size; what was asked of angles and points stays.
 const unbounded: Partial<FormText> = {
@@ -46,17 +54,17 @@ const unbounded: Partial<FormText> = {
 const sheet = { ends: new Float64Array(), box: [0, 0, 10, 7] as [number, number, number, number] };
 
 // Follows the form after a pause, so that typing stays smooth.
-function useHeatMap(form: FormText, domain: PlanarDomain | undefined) {
+function useHeatMap(form: FormText, domain: Domain | undefined, ends: Float64Array) {
   const [heat, setHeat] = useState<Backdrop & { low: number; high: number }>();
   useEffect(() => {
     const timer = setTimeout(() => {
-      const made = domain && heatMapOf(form, domain, boxOf(domain));
+      const made = domain && heatMapOf(form, domain, ends, boxOf(domain));
       if (!made) return setHeat(undefined);
       const image = document.createElement("canvas");
       image.width = made.pixels.width;
       image.height = made.pixels.height;
       image.getContext("2d")!.putImageData(made.pixels, 0, 0);
-      setHeat({ ...made, image, ends: segmentEnds(domain) });
+      setHeat({ ...made, image, ends });
     }, 150);
     return () => clearTimeout(timer);
   }, [form.size, form.sizeKind, domain]);
@@ -71,39 +79,50 @@ export function MeshPage() {
   const [fileProblem, setFileProblem] = useState<string>();
   const [wrong, setWrong] = useState<Problems>({});
   // What the run was asked, and the texts that asked it.
-  const [asked, setAsked] = useState<{ request: GenerateMeshRequest; form: FormText; file: string }>();
+  const [asked, setAsked] = useState<{ request: GenerateMeshRequest; form: FormText; source: Source }>();
+  const [reading, setReading] = useState<string>();
+  const stopReading = useRef(new AbortController());
   const [sketch, setSketch] = useState<Sketch>();
   const [, setCorners] = useState(0);
   const [dropping, setDropping] = useState(false);
   const desk = useRef<HTMLElement>(null);
 
   const { domain } = source;
-  const outline = useMemo(
-    () => (sketch ? sheet : { ends: segmentEnds(domain), box: boxOf(domain) }),
-    [domain, sketch],
-  );
-  const heat = useHeatMap(form, sketch ? undefined : domain);
-  const bounds = useMemo(() => boundsOf(asked?.request, domain), [asked]);
-  const regionNames = useMemo(() => namesOf(asked?.request).regions, [asked]);
+  const ends = useMemo(() => segmentEnds(domain), [domain]);
+  const outline = useMemo(() => (sketch ? sheet : { ends, box: boxOf(domain) }), [domain, sketch]);
+  const heat = useHeatMap(form, sketch ? undefined : domain, ends);
+  const bounds = useMemo(() => boundsOf(asked?.request, ends), [asked]);
+  const regionNames = useMemo(() => regionNamesOf(asked?.request), [asked]);
 
   const use = (next: Source, change: Partial<FormText>) => {
+    stopReading.current.abort();
+    setReading(undefined);
     run.close();
     setAsked(undefined);
     setSketch(undefined);
     setFileProblem(undefined);
     setWrong({});
     setSource(next);
-    setForm({ ...form, ...change });
+    setForm((before) => ({ ...before, ...change }));
   };
-  const open = async (file: File) => {
-    const answer = await readFile(file);
-    if ("problem" in answer) return setFileProblem(answer.problem);
-    const box = boxOf(answer.domain);
-    // An edge that gives some thousands of triangles, to begin with.
-    const edge = box ? Number((Math.hypot(box[2] - box[0], box[3] - box[1]) / 100).toPrecision(1)) : "";
-    use({ domain: answer.domain, text: undefined, example: undefined }, {
-      ...unbounded, size: String(edge),
-    });
+  // The last file that was given counts.
+  const open = async (file: File, inMetres = false) => {
+    stopReading.current.abort();
+    const { signal } = (stopReading.current = new AbortController());
+    setReading(file.name);
+    try {
+      const read = await readFile(file, inMetres, signal);
+      const box = boxOf(read.domain);
+      // An edge that gives some thousands of triangles, to begin with.
+      const edge = box ? Number((Math.hypot(box[2] - box[0], box[3] - box[1]) / 100).toPrecision(1)) : "";
+      const ofCoordinates = read.findings.some(({ warning }) => warning === "coordinates");
+      const project = !inMetres && ofCoordinates ? () => void open(file, true) : undefined;
+      use({ ...read, name: file.name, text: undefined, example: undefined, inMetres, project }, { ...unbounded, size: String(edge) });
+    } catch (error) {
+      if (signal.aborted) return;
+      setReading(undefined);
+      setFileProblem(explain(error).sentence);
+    }
   };
   const draw = () => {
     run.close();
@@ -115,11 +134,8 @@ export function MeshPage() {
     if (!sketch) return;
     sketch.close();
     if (sketch.rings.length === 0) return;
-    const text = geoJsonOf([{ rings: sketch.rings }]);
     desk.current!.querySelector<HTMLElement>("#size")?.focus();
-    use({ domain: readGeoJson("drawing.geojson", text), text, example: undefined }, {
-      ...unbounded, size: "0.2",
-    });
+    use(own("drawing.geojson", [{ rings: sketch.rings }]), { ...unbounded, size: "0.2" });
   };
 
   const made = () => {
@@ -136,7 +152,7 @@ export function MeshPage() {
     if (sketch) return;
     const request = made();
     if (!request) return;
-    setAsked({ request, form, file: domain.name });
+    setAsked({ request, form, source });
     run.start({ kind: "mesh", request });
   };
   const [submitProblem, setSubmitProblem] = useState<string>();
@@ -200,6 +216,7 @@ export function MeshPage() {
         <div class="desk-scroll">
           <DomainPanel
             {...source}
+            reading={reading}
             problem={fileProblem}
             drawing={sketch !== undefined}
             onExample={(example) => use(sourceOf(example), { ...emptyForm, ...example.form })}
@@ -231,7 +248,7 @@ export function MeshPage() {
           />
         )}
         {sketch && <SketchBar sketch={sketch} onDone={finish} onCancel={() => setSketch(undefined)} />}
-        {dropping && <p class="drop-here">Drop a .poly, GeoJSON or WKT file</p>}
+        {dropping && <p class="drop-here">Drop the file of a domain</p>}
       </MeshView>
       <aside class="desk-side" aria-label="Result">
         <div class="desk-scroll">
@@ -240,14 +257,17 @@ export function MeshPage() {
           <MeshFigures
             run={run}
             regionNames={regionNames}
-            boundAt={asked && ((centroid, region) => boundAt(asked.form, domain, centroid, region))}
+            boundAt={asked && ((centroid, region) => boundAt(asked.form, domain, ends, centroid, region))}
           />
           {asked && state.phase === "done" && (
-            <div class="row copies" role="group" aria-label="Copy the request">
-              <span class="faint">Copy as</span>
-              <Copy label="weft mesh" text={shellCommand(asked.request, asked.file)} />
-              <Copy label="Python" text={pythonProgram(asked.request, asked.file)} />
-            </div>
+            <>
+              <Downloads of={asked.request} stem={asked.source.name.replace(/\.\w+$/, "")} />
+              <div class="row copies" role="group" aria-label="Copy the request">
+                <span class="faint">Copy as</span>
+                <Copy label="weft mesh" text={shellCommand(asked.request, asked.source)} />
+                <Copy label="Python" text={pythonProgram(asked.request, asked.source)} />
+              </div>
+            </>
           )}
         </div>
       </aside>

@@ -57,7 +57,7 @@ export function MeshOfPage({ digest }: { digest: string }) {
         </h1>
         <Copy label="Copy the link" text={location.href} />
         <span class="gap" />
-        {job && <Downloads job={job} summary={summary} digest={digest} />}
+        {job && <Downloads of={job} stem={digest.slice(0, 12)} />}
       </header>
       <Problem of={found.problem} />
       {found.value && !job && <Missing digest={digest} />}

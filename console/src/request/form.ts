@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the fields of the Mesh page say, as texts, and the request that they make.
 import { create } from "@bufbuild/protobuf";
-import { toMessage, type PlanarDomain } from "../domain/planar-domain";
 import {
   GenerateMeshRequestSchema,
   Measure,
   Placement,
+  type Domain,
   type GenerateMeshRequest,
 } from "../gen/weft/v1/mesh_service_pb";
 
@@ -55,7 +55,7 @@ const known = { distance: { case: "distance", value: {} }, width: { case: "width
 const isNumber = (text: string) => text !== "" && Number.isFinite(Number(text));
 
 // The request, or what of the form is not a number. Whether values make sense is the server's to say.
-export function requestOf(form: FormText, domain: PlanarDomain): GenerateMeshRequest | Problems {
+export function requestOf(form: FormText, domain: Domain): GenerateMeshRequest | Problems {
   const problems: Problems = {};
   const number = (field: "gradation" | "cellsAcross" | "minAngle" | "maxTriangles" | "snap") => {
     const text = form[field].trim();
@@ -76,7 +76,7 @@ export function requestOf(form: FormText, domain: PlanarDomain): GenerateMeshReq
     problems.maxTriangles = "a whole number is expected";
   if (Object.keys(problems).length > 0) return problems;
   return create(GenerateMeshRequestSchema, {
-    domain: toMessage(domain, snap ?? 0),
+    domain: { ...domain, snap: snap ?? 0 },
     size: {
       field:
         form.sizeKind === "none"

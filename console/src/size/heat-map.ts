@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The size that the form asks for, on a grid over the domain, before there is a mesh: without
 // gradation and edges across, which only lower it, and without the bounds of regions.
-import type { PlanarDomain } from "../domain/planar-domain";
+import type { Domain } from "../gen/weft/v1/mesh_service_pb";
 import type { FormText } from "../request/form";
 import { scaleColour } from "../view/colours";
 import type { Box } from "../view/picture";
 import { compile } from "./expression";
-import { nearestOf } from "./nearest";
+import { nearestOf, type Lines } from "./nearest";
 
 export interface HeatMap {
   box: Box;
@@ -18,12 +18,12 @@ export interface HeatMap {
 const longest = 160; // cells along the longer side, at most
 
 // Undefined if the size is a number or none, or if the page cannot compute it.
-export function heatMapOf(form: FormText, domain: PlanarDomain, box: Box | undefined): HeatMap | undefined {
+export function heatMapOf(form: FormText, domain: Domain, lines: Lines, box: Box | undefined): HeatMap | undefined {
   if (form.sizeKind === "none" || !box || Number.isFinite(Number(form.size))) return undefined;
   const value = compile(form.size, ["distance"]);
   if (!value) return undefined;
   const [width, height] = [box[2] - box[0], box[3] - box[1]];
-  const nearest = /\bdistance\b/.test(form.size) ? nearestOf(domain) : undefined;
+  const nearest = /\bdistance\b/.test(form.size) ? nearestOf(lines) : undefined;
   const cell = Math.max(width, height) / longest;
   if (!(cell > 0) || !(width > 0) || !(height > 0)) return undefined;
   const columns = Math.max(1, Math.ceil(width / cell));
@@ -58,13 +58,13 @@ export function heatMapOf(form: FormText, domain: PlanarDomain, box: Box | undef
 
 // Of a horizontal line, what is in the domain: of each area, as parity tells; without areas, all between
 // the first and the last crossing.
-function stretches({ points, segments, areas, borders }: PlanarDomain, y: number): [number, number][] {
+function stretches({ points, segments, areas, segmentAreas }: Domain, y: number): [number, number][] {
   const found: number[][] = Array.from({ length: areas.length + 1 }, () => []); // of lines, then of areas
   for (let i = 0; i < segments.length; i += 2) {
     const [a, b] = [2 * segments[i], 2 * segments[i + 1]];
     if (points[a + 1] <= y === points[b + 1] <= y) continue;
     const x = points[a] + ((y - points[a + 1]) / (points[b + 1] - points[a + 1])) * (points[b] - points[a]);
-    found[borders[i / 2] ?? 0].push(x);
+    found[segmentAreas[i / 2] ?? 0].push(x);
   }
   for (const xs of found) xs.sort((a, b) => a - b);
   const lines = found[0];

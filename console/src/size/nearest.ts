@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Distances to the nearest segment of a domain, by a tree of boxes around its segments.
 //
-//   const distance = nearestOf(domain).distance(x, y);
+//   const distance = nearestOf(segmentEnds(domain)).distance(x, y);
 
-export interface Lines {
-  points: Float64Array; // x0, y0, x1, y1, ...
-  segments: Uint32Array; // a0, b0, a1, b1, ...
-}
+export type Lines = Float64Array; // x, y of both ends of each segment
 
 const leaf = 8; // segments, at most
 
@@ -22,7 +19,7 @@ export class Nearest {
   private readonly root: Node | undefined;
 
   constructor(private readonly lines: Lines) {
-    this.order = Uint32Array.from({ length: lines.segments.length / 2 }, (_, i) => i);
+    this.order = Uint32Array.from({ length: lines.length / 4 }, (_, i) => i);
     this.root = this.order.length > 0 ? this.node(0, this.order.length) : undefined;
   }
 
@@ -32,20 +29,17 @@ export class Nearest {
   }
 
   private node(from: number, to: number): Node {
-    const { points } = this.lines;
+    const { lines } = this;
     const box: Node["box"] = [Infinity, Infinity, -Infinity, -Infinity];
     for (let i = from; i < to; ++i)
-      for (const vertex of this.ends(this.order[i]))
-        for (const d of [0, 1]) {
-          box[d] = Math.min(box[d], points[2 * vertex + d]);
-          box[d + 2] = Math.max(box[d + 2], points[2 * vertex + d]);
-        }
+      for (const d of [0, 1, 2, 3]) {
+        const value = lines[4 * this.order[i] + d];
+        box[d % 2] = Math.min(box[d % 2], value);
+        box[2 + (d % 2)] = Math.max(box[2 + (d % 2)], value);
+      }
     if (to - from <= leaf) return { box, from, to, halves: undefined };
     const along = box[2] - box[0] >= box[3] - box[1] ? 0 : 1;
-    const middle = (segment: number) => {
-      const [a, b] = this.ends(segment);
-      return points[2 * a + along] + points[2 * b + along];
-    };
+    const middle = (segment: number) => lines[4 * segment + along] + lines[4 * segment + 2 + along];
     this.order.subarray(from, to).sort((a, b) => middle(a) - middle(b));
     const half = (from + to) >> 1;
     return { box, from, to, halves: [this.node(from, half), this.node(half, to)] };
@@ -64,18 +58,13 @@ export class Nearest {
   }
 
   private squareTo(segment: number, x: number, y: number): number {
-    const { points } = this.lines;
-    const [a, b] = this.ends(segment);
-    const [dx, dy] = [points[2 * b] - points[2 * a], points[2 * b + 1] - points[2 * a + 1]];
+    const [ax, ay, bx, by] = this.lines.subarray(4 * segment, 4 * segment + 4);
+    const [dx, dy] = [bx - ax, by - ay];
     const length = dx * dx + dy * dy;
-    const along = length > 0 ? ((x - points[2 * a]) * dx + (y - points[2 * a + 1]) * dy) / length : 0;
+    const along = length > 0 ? ((x - ax) * dx + (y - ay) * dy) / length : 0;
     const t = Math.min(1, Math.max(0, along));
-    const [ex, ey] = [points[2 * a] + t * dx - x, points[2 * a + 1] + t * dy - y];
+    const [ex, ey] = [ax + t * dx - x, ay + t * dy - y];
     return ex * ex + ey * ey;
-  }
-
-  private ends(segment: number): [number, number] {
-    return [this.lines.segments[2 * segment], this.lines.segments[2 * segment + 1]];
   }
 }
 
@@ -87,7 +76,7 @@ function squareTo(box: Node["box"], x: number, y: number): number {
 
 const known = new WeakMap<Lines, Nearest>();
 
-// Made once for each domain.
+// Made once for the same ones.
 export function nearestOf(lines: Lines): Nearest {
   const made = known.get(lines) ?? new Nearest(lines);
   known.set(lines, made);

@@ -34,7 +34,7 @@ export function boundsOf(request: GenerateMeshRequest | undefined, lines: Lines)
       break;
     case "expression":
       if (!compile(size.field.value, ["distance"])) return undefined;
-      everywhere = { text: size.field.value, isEdge, lines: { points: lines.points, segments: lines.segments } };
+      everywhere = { text: size.field.value, isEdge, lines };
       break;
     case "raster":
       return undefined;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mesh to look at, with its tools and its legend.
 //
-//   <MeshView run={run} regionNames={namesOf(request).regions} bounds={boundsOf(summary.request)} />
+//   <MeshView run={run} regionNames={regionNamesOf(request)} bounds={boundsOf(summary.request)} />
 import type { ComponentChildren } from "preact";
 import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Names } from "../domain/names";

@@ -18,6 +18,8 @@ export class Sketch {
   // Sets a corner at a point of the plane, at `scale` pixels per unit.
   set(at: Point, scale: number): void {
     const [first] = this.ring;
+    const last = this.ring.at(-1);
+    if (last && last[0] === at[0] && last[1] === at[1]) return;
     if (first && Math.hypot(at[0] - first[0], at[1] - first[1]) * scale < near) return this.close();
     this.ring.push(at);
     this.changed();

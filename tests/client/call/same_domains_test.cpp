@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The domains of tests/domain_files, which Python and the console read, too: see its README.md.
+// The domains of tests/domain_files, which Python reads, too: see its README.md.
 #include <google/protobuf/util/json_util.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 namespace weft::client {
 namespace {
 
-TEST(SameDomains, AreReadFromFilesAsPythonAndTheConsoleReadThem) {
+TEST(SameDomains, AreReadFromFilesAsPythonReadsThem) {
   const auto folder = std::filesystem::path(weft::testing::kModels).parent_path() / "domain_files";
   const auto expect = nlohmann::json::parse(contents_of(folder / "expect.json"));
   for (const auto& [name, wanted] : expect.items()) {
