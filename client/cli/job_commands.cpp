@@ -16,7 +16,8 @@ namespace {
 constexpr char kSubmitExamples[] = R"(Examples:
   weft submit coast.geojson --size 1e-6 --server mesh.example.org:7421
   id=$(weft submit key.poly --request-id nightly-2026-11-20)
-  weft submit key.poly --min-angle 30 --wait -o key.vtu)";
+  weft submit key.poly --min-angle 30 --wait -o key.vtu
+  weft submit key.poly --notify https://hooks.example.org/weft)";
 
 constexpr char kGetExamples[] = R"(Example:
   weft get 01JCZ3V5K2M7Q8R9S0T1V2W3X4 --json | jq -r .state)";
@@ -109,6 +110,12 @@ void add_submit(CLI::App& app, Chosen& chosen) {
       ->envname("WEFT_REQUEST_ID")
       ->check(CLI::Validator(check_request_id, "", ""))
       ->type_name("ID");
+  command
+      .add_option("--notify", options->notify,
+                  "URL that the server tells of the job's end, by a signed POST. Default: the one "
+                  "that the server has for you, if any")
+      ->envname("WEFT_NOTIFY")
+      ->type_name("URL");
   command
       .add_flag("--wait", options->wait,
                 "Wait for the job to end; with -o and --draw, write its mesh")

@@ -25,6 +25,7 @@ struct SubmitOptions {
   RequestOptions request_options;
   MeshOutputOptions output;  // needs `wait`
   std::string request_id;    // empty: a random one
+  std::string notify;        // empty: what the server has for the client
   bool wait = false;
   JobServerOptions calls;
   bool json = false;

@@ -58,6 +58,7 @@ Result<v1::Job> submit(JobServer& server, const InputDomain& input, const Submit
   v1::SubmitJobRequest request;
   *request.mutable_mesh() = make_request(domain, *request_options);
   request.set_request_id(options.request_id.empty() ? random_request_id() : options.request_id);
+  request.set_notify(options.notify);
   request.set_no_cache(options.request_options.asked.no_cache());
   auto job = server.submit(request, origin_of(input, &options.request_options));
   if (job) return job;

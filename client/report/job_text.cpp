@@ -50,6 +50,19 @@ Json error_json(const google::rpc::Status& error) {
           {"message", error.message()}};
 }
 
+const char* callback_state_name(v1::CallbackState state) {
+  switch (state) {
+    case v1::CALLBACK_STATE_PENDING:
+      return "pending";
+    case v1::CALLBACK_STATE_DELIVERED:
+      return "delivered";
+    case v1::CALLBACK_STATE_FAILED:
+      return "failed";
+    default:
+      return "unknown";
+  }
+}
+
 // A line of a table: columns as wide as their longest cell, two blanks between them.
 using Row = std::vector<std::string>;
 
@@ -117,6 +130,11 @@ Json job_json(const v1::Job& job) {
   if (!job.worker().empty()) json["worker"] = job.worker();
   if (!job.client().empty()) json["client"] = job.client();
   json["from_store"] = job.from_store();
+  if (const v1::Callback& callback = job.callback(); job.has_callback())
+    json["callback"] = {{"url", callback.url()},
+                        {"state", callback_state_name(callback.state())},
+                        {"attempts", callback.attempts()},
+                        {"error", callback.error()}};
   if (const v1::Progress& progress = job.progress(); job.has_progress())
     json["progress"] = {{"stage", stage_key(progress.stage())},
                         {"triangles", progress.triangles()},
@@ -154,6 +172,11 @@ std::string job_text(const v1::Job& job) {
   if (!job.worker().empty()) row("worker", harmless(job.worker()));
   if (!job.client().empty()) row("client", harmless(job.client()));
   if (job.from_store()) row("from store", "the mesh was kept already");
+  if (const v1::Callback& callback = job.callback(); job.has_callback()) {
+    row("callback", callback_state_name(callback.state()) + (": " + harmless(callback.url())));
+    if (!callback.error().empty())
+      row("", "attempt " + std::to_string(callback.attempts()) + ": " + harmless(callback.error()));
+  }
   if (job.has_progress()) row("progress", progress_text(job.progress(), false));
   if (job.has_error()) {
     row("error", reason_of(job.error()));

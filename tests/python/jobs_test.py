@@ -108,3 +108,10 @@ def test_a_server_without_a_store_keeps_no_jobs(server):
     with weft.Client(server.target) as client, pytest.raises(weft.ServerError) as caught:
         client.submit(KEY)
     assert caught.value.code == "UNIMPLEMENTED"
+
+
+def test_a_callback_needs_a_secret_on_the_server(client):
+    with pytest.raises(weft.InvalidRequest, match="the server sends no callbacks") as caught:
+        client.submit(KEY, size=KEY_SIZE, notify="https://example.org/hook")
+    assert [violation.field for violation in caught.value.violations] == ["notify"]
+    assert client.submit(KEY, size=KEY_SIZE).callback is None

@@ -2,7 +2,7 @@
 // One job: what it does, why it failed, or what it made.
 import { useEffect, useState } from "preact/hooks";
 import { jobs as service } from "../client";
-import { JobState, type Job as JobMessage } from "../gen/weft/v1/job_service_pb";
+import { CallbackState, JobState, type Job as JobMessage } from "../gen/weft/v1/job_service_pb";
 import { ErrorText } from "../jobs/error-text";
 import { JobActions } from "../jobs/job-actions";
 import { countText, isOpen, JobProgress, secondsOf, StateBadge, workedText } from "../jobs/job-parts";
@@ -15,6 +15,13 @@ import { usePoll } from "../live/poll";
 
 const whileRunning = 400; // ms between two questions
 const whileQueued = 1000;
+
+const callbackNames: Record<CallbackState, string> = {
+  [CallbackState.UNSPECIFIED]: "Unknown",
+  [CallbackState.PENDING]: "Pending",
+  [CallbackState.DELIVERED]: "Delivered",
+  [CallbackState.FAILED]: "Failed",
+};
 
 function Times({ job }: { job: JobMessage }) {
   const rows: [string, string | undefined][] = [
@@ -57,6 +64,15 @@ function Times({ job }: { job: JobMessage }) {
           <div>
             <dt>Server</dt>
             <dd class="mono cut" data-varies>{job.worker}</dd>
+          </div>
+        )}
+        {job.callback && (
+          <div>
+            <dt>Callback</dt>
+            <dd class="cut">
+              {callbackNames[job.callback.state]}: {job.callback.url}
+              {job.callback.error && ` (${job.callback.error})`}
+            </dd>
           </div>
         )}
         {job.fromStore && (

@@ -62,6 +62,25 @@ TEST(JobText, SaysOneFieldALine) {
             std::string::npos);
 }
 
+TEST(JobText, SaysWhatBecameOfACallback) {
+  v1::Job job = sample_job("job-1", v1::JOB_STATE_SUCCEEDED);
+  v1::Callback& callback = *job.mutable_callback();
+  callback.set_url("http://example.org/\x1b[2J");
+  callback.set_state(v1::CALLBACK_STATE_PENDING);
+  callback.set_attempts(2);
+  callback.set_error("the answer has status 500");
+  EXPECT_NE(job_text(job).find("\ncallback   pending: http://example.org/?[2J\n"
+                               "           attempt 2: the answer has status 500\n"),
+            std::string::npos)
+      << job_text(job);
+  callback.set_url("http://example.org/");
+  callback.set_state(v1::CALLBACK_STATE_DELIVERED);
+  EXPECT_EQ(job_json(job)["callback"],
+            Json::parse(R"({"url": "http://example.org/", "state": "delivered", "attempts": 2,
+              "error": "the answer has status 500"})"));
+  EXPECT_EQ(job_json(sample_job("job-1", v1::JOB_STATE_QUEUED)).count("callback"), 0U);
+}
+
 TEST(JobText, GivesProgramsTheFieldsThatAreSet) {
   EXPECT_EQ(job_json(sample_job("job-1", v1::JOB_STATE_QUEUED)),
             Json::parse(R"({"id": "job-1", "state": "queued",

@@ -2,6 +2,7 @@
 """weftd under deploy/seccomp/weftd.json: it does all its work, and what is not its work is refused."""
 from __future__ import annotations
 
+import http.server
 import json
 import os
 import pathlib
@@ -128,6 +129,27 @@ def test_metrics_are_shown(server: Server) -> None:
     address = next(line for line in server.addresses if "=" in line).split("=")[1]
     with urllib.request.urlopen(f"http://{address}/metrics") as answer:
         assert b"\nweft_build_info{" in answer.read()
+
+
+def test_a_callback_is_sent(tmp_path: pathlib.Path) -> None:
+    told = []
+
+    class Receiver(http.server.BaseHTTPRequestHandler):
+        def do_POST(self) -> None:
+            told.append(self.headers["webhook-id"])
+            self.send_response(204)
+            self.end_headers()
+
+    (tmp_path / "secrets").write_text("* whsec_MfKQ9r8GKYqrTwjUPD8ILPZIo2LaLaSw\n")
+    server = Server(tmp_path, "--data", tmp_path / "data", "--notify-secrets", tmp_path / "secrets",
+                    "--notify-allow", "127.0.0.0/8")
+    with http.server.HTTPServer(("127.0.0.1", 0), Receiver) as receiver:
+        job = server.weft("submit", *KEY, "--quiet", "--notify",
+                          f"http://localhost:{receiver.server_address[1]}/").strip()
+        receiver.timeout = 60
+        receiver.handle_request()
+    assert told == [job]
+    assert server.end() == 0
 
 
 def test_the_console_is_served(server: Server, certificate: pathlib.Path) -> None:

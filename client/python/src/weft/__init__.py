@@ -33,12 +33,12 @@ from .errors import (AlreadyExists, BoundsNotMet, Cancelled, DamagedStream, Dead
 from .fields import Field, distance, on_mesh, raster, width
 from .local import LocalServer, local
 from .quality import Quality
-from .results import (Accepted, Job, JobState, LayerSummary, Merging, NarrowPlace, OutsideSegments, Progress, ServerInfo,
-                      ServerLimits, Simplification, SizeWarning, Summary, Timings, Unrefined)
+from .results import (Accepted, Callback, CallbackState, Job, JobState, LayerSummary, Merging, NarrowPlace,
+                      OutsideSegments, Progress, ServerInfo, ServerLimits, Simplification, SizeWarning, Summary, Timings, Unrefined)
 from .size import Raster, Size
 
 __all__ = [
-    "Accepted", "AlreadyExists", "Area", "BoundsNotMet", "Cancelled", "Chunk", "Client",
+    "Accepted", "AlreadyExists", "Area", "BoundsNotMet", "Callback", "CallbackState", "Cancelled", "Chunk", "Client",
     "DamagedStream", "DeadlineExceeded", "Domain", "DomainError", "DomainLike", "FailedPrecondition", "Field",
     "FieldViolation", "InvalidRequest", "Job", "JobState", "LayerSummary", "Layers", "LimitExceeded", "LocalServer",
     "LocalServerError", "Merging", "Mesh", "MeshFileError", "MeshOptions", "MeshStream",

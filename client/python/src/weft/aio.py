@@ -71,12 +71,12 @@ class Client(ClientBase):
         return results.server_info(await self._call(_protocol.GET_SERVER_INFO))
 
     async def submit(self, domain: DomainLike, size: Size = None, min_angle: float = 20, *,
-                     request_id: str | None = None, timeout: float | None = None,
-                     **options: Unpack[MeshOptions]) -> Job:
+                     request_id: str | None = None, notify: str | None = None,
+                     timeout: float | None = None, **options: Unpack[MeshOptions]) -> Job:
         """See weft.Client.submit."""
         mesh = await in_thread(job_request, domain, size, min_angle, options)
         answer = await self._call(_protocol.SUBMIT_JOB, timeout, mesh=mesh, no_cache=mesh.no_cache,
-                                  request_id=_jobs.request_id(request_id))
+                                  request_id=_jobs.request_id(request_id), notify=notify or "")
         return results.job(answer.job)
 
     async def get_job(self, job: Job | str) -> Job:

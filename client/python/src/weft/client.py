@@ -114,17 +114,18 @@ class Client(ClientBase):
         return results.server_info(self._call(_protocol.GET_SERVER_INFO))
 
     def submit(self, domain: DomainLike, size: Size = None, min_angle: float = 20, *,
-               request_id: str | None = None, timeout: float | None = None,
+               request_id: str | None = None, notify: str | None = None, timeout: float | None = None,
                **options: Unpack[MeshOptions]) -> Job:
         """Submits a job that makes the mesh; the server must keep jobs.
 
         `request_id`: a submission that is repeated with the same one finds the same job; default: a
-        random one. The rest is as in `mesh`; of a domain in longitude and latitude the mesh is
+        random one. `notify`: a URL that the server tells of the job's end, by a signed POST; default:
+        the one that the server has for the client, if any. The rest is as in `mesh`; of a domain in longitude and latitude the mesh is
         fetched in metres, so `to_metres` must be set.
         """
         mesh = job_request(domain, size, min_angle, options)
         answer = self._call(_protocol.SUBMIT_JOB, timeout, mesh=mesh, no_cache=mesh.no_cache,
-                            request_id=_jobs.request_id(request_id))
+                            request_id=_jobs.request_id(request_id), notify=notify or "")
         return results.job(answer.job)
 
     def get_job(self, job: Job | str) -> Job:

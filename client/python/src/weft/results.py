@@ -318,6 +318,26 @@ class JobState(enum.Enum):
         return int(_protocol.enum("weft.v1.JobState").values_by_name[f"JOB_STATE_{self.name}"].number)
 
 
+class CallbackState(enum.Enum):
+    """What became of a callback."""
+
+    PENDING = "pending"
+    """The job has not ended, or another attempt follows."""
+    DELIVERED = "delivered"
+    FAILED = "failed"
+
+
+@dataclasses.dataclass(frozen=True)
+class Callback:
+    """Telling a URL of the end of a job."""
+
+    url: str
+    state: CallbackState
+    attempts: int
+    error: str
+    """Why the last attempt failed; empty if none has, or once it is delivered."""
+
+
 @dataclasses.dataclass(frozen=True, eq=False)
 class Job:
     """A job as it was when the server was asked."""
@@ -342,6 +362,8 @@ class Job:
     """Whether the mesh was kept already when the job was accepted."""
     client: str
     """Name of the client that submitted it; empty if the server does not identify clients."""
+    callback: Callback | None
+    """None if nobody is told of its end."""
 
 
 def accepted(message: Any) -> Accepted:
@@ -427,4 +449,10 @@ def job(message: Any) -> Job:
         Job, message, state=state, error=error,
         create_time=time("create_time"), start_time=time("start_time"), end_time=time("end_time"),
         progress=progress(message.progress) if message.HasField("progress") else None,
-        summary=summary(message.summary) if message.HasField("summary") else None)
+        summary=summary(message.summary) if message.HasField("summary") else None,
+        callback=_callback(message.callback) if message.HasField("callback") else None)
+
+
+def _callback(message: Any) -> Callback:
+    name = _protocol.enum("weft.v1.CallbackState").values_by_number[message.state].name
+    return _take(Callback, message, state=CallbackState[name.removeprefix("CALLBACK_STATE_")])
