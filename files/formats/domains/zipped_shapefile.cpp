@@ -48,9 +48,9 @@ tl::expected<Parts, std::string> parts_of(const ZipArchive& archive) {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::error_code ignored;
-    std::string name = (std::filesystem::temp_directory_path(ignored) / "weft-XXXXXX").string();
-    if (::mkdtemp(name.data()) != nullptr) path_ = name;
+    std::error_code missing;
+    std::string name = (std::filesystem::temp_directory_path(missing) / "weft-XXXXXX").string();
+    if (!missing && ::mkdtemp(name.data()) != nullptr) path_ = name;
   }
   ~TemporaryFolder() {
     std::error_code ignored;
@@ -77,7 +77,12 @@ Result<Domain> read_zipped_shapefile(const std::filesystem::path& path, bool lon
   if (!archive) return bad(archive.error());
   const auto parts = parts_of(*archive);
   if (!parts) return bad(parts.error());
+  const auto no_room = [&path] {
+    return fail(ExitCode::kUnwritableOutput,
+                path.string() + ": there is no room to unpack it in TMPDIR");
+  };
   const TemporaryFolder folder;
+  if (folder.path().empty()) return no_room();
   const std::filesystem::path shapes = folder.path() / "part.shp";
   for (const auto& [extension, member] : *parts) {
     std::string unpacked;
@@ -86,9 +91,7 @@ Result<Domain> read_zipped_shapefile(const std::filesystem::path& path, bool lon
     std::ofstream out(std::filesystem::path(shapes).replace_extension(extension));
     out.write(bytes->data(), static_cast<std::streamsize>(bytes->size()));
     out.close();
-    if (!out)
-      return fail(ExitCode::kUnwritableOutput,
-                  path.string() + ": there is no room to unpack it in TMPDIR");
+    if (!out) return no_room();
   }
   return read_shapefile(shapes, lonlat, path.string());
 }

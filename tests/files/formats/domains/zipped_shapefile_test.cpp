@@ -74,7 +74,7 @@ TEST_F(ZippedShapefile, IsOneAndWhole) {
   EXPECT_EQ(refusal(zip_of({{"d.shp", "x"}, {"e.shp", "x"}})),
             "d.zip: holds several shapefiles, and one is read");
   EXPECT_EQ(refusal(zip_of({{"d.shp", part(".shp")}, {"d.dbf", "x"}})),
-            "d.zip.dbf: is not a dBASE table");
+            "d.dbf: is not a dBASE table");
   EXPECT_EQ(zipped_shapefile_bytes("PK"), 0u);
   std::string absurd = zip_of({{"d.shp", "x"}});
   absurd[absurd.rfind("PK\1\2") + 10] = 8;   // deflated
