@@ -13,6 +13,7 @@
 #include "server/http/byte_range.h"
 #include "server/http/form.h"
 #include "server/http/formats.h"
+#include "server/http/mesh_warnings.h"
 #include "server/version.h"
 #include "server/wire/request_key.h"
 
@@ -25,62 +26,21 @@ namespace http = boost::beast::http;
 constexpr std::uint64_t kBytesOfShortFile = std::uint64_t{4} << 20;
 // Meshes that are written in some milliseconds.
 constexpr std::uint64_t kShortMesh = 50'000;
-constexpr std::size_t kMaxWarnings = 16;
 
-// The name of a file, from what may be any text.
+// The name of a file, with its extension, from what may be any text.
 std::string harmless_name(const std::string& text) {
   constexpr std::size_t kMax = 100;
-  std::string name = std::filesystem::path(text).filename().string().substr(0, kMax);
+  std::string name = std::filesystem::path(text).filename().string();
+  if (name.size() > kMax) name.erase(kMax / 2, name.size() - kMax);
   for (char& c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '-') c = '_';
   return name;
-}
-
-// A header's value: one line of ASCII.
-std::string one_line(std::string text) {
-  constexpr std::size_t kMax = 400;
-  if (text.size() > kMax) text.resize(kMax);
-  for (char& c : text)
-    if (c < ' ' || c > '~') c = c == '\n' ? ' ' : '?';
-  return text;
 }
 
 std::string hexadecimal(const std::string& bytes) {
   std::string text;
   for (const char c : bytes) text += fmt::format("{:02x}", static_cast<unsigned char>(c));
   return text;
-}
-
-// What the mesh is not, though it was asked for.
-void add_warnings(const v1::Summary& summary, const SentDomain& sent, std::uint64_t most_triangles,
-                  std::vector<std::string>& warnings) {
-  if (summary.has_outside()) {
-    const v1::OutsideSegments& outside = summary.outside();
-    files::Point at{outside.x(), outside.y()};
-    if (sent.projection != nullptr && !sent.projection->to_metres())
-      at = sent.projection->to_lonlat(at);
-    warnings.push_back(fmt::format("segments outside of what is meshed: {}, the first at {}",
-                                   outside.segments(), files::coordinates(at.x, at.y)));
-  }
-  const v1::Unrefined& unrefined = summary.unrefined();
-  if (const std::uint64_t count = unrefined.precision() + unrefined.streaming(); count > 0)
-    warnings.push_back(fmt::format("triangles that miss a bound without exemption: {}", count));
-  if (most_triangles > 0 && summary.triangles() > most_triangles)
-    warnings.push_back("the domain alone, without refinement, has more than max_triangles");
-  if (const v1::LayerSummary& layers = summary.layers(); layers.cut() > 0)
-    warnings.push_back(
-        fmt::format("layers thinner than asked for at {} corners for want of room, the least "
-                    "{:.3g} thick at ({}, {})",
-                    layers.cut(), layers.least_thickness(), layers.x(), layers.y()));
-}
-
-void warn(std::vector<std::string> warnings, Response& head) {
-  if (warnings.size() > kMaxWarnings) {
-    const std::size_t more = warnings.size() - (kMaxWarnings - 1);
-    warnings.resize(kMaxWarnings - 1);
-    warnings.push_back(fmt::format("{} more warnings", more));
-  }
-  for (const std::string& warning : warnings) head.insert("Weft-Warning", one_line(warning));
 }
 
 // The names that a stored request has.

@@ -110,6 +110,15 @@ def test_a_form_brings_the_fields_of_a_size(tmp_path):
             assert status == 400 and words in json.loads(body)["detail"], body
 
 
+def test_layers_without_room_are_a_warning(tmp_path):
+    (tmp_path / "channel.poly").write_text(
+        "4 2 0 0\n1 0 0\n2 9 0\n3 9 1\n4 0 1\n4 1\n1 1 2 1\n2 2 3 2\n3 3 4 1\n4 4 1 2\n0\n")
+    with Server(tmp_path) as server:
+        url = f"http://{server.http}/v1/mesh/?layers=1:first=0.1,rows=9&edge=0.3"
+        assert curl(tmp_path, "-T", "channel.poly", url, "-o", "mesh.vtu", "-D", "head")[0] == 200
+    assert "Weft-Warning: layers thinner than asked for, for want of room, at 4 corners" in (tmp_path / "head").read_text()
+
+
 def test_grids_of_a_domain_in_degrees_are_in_degrees(tmp_path):
     rows = [[8000 + 500 * (i + j) for i in range(40)] for j in range(40)]
     (tmp_path / "h.asc").write_text(grid(-90, 20, 1, rows))
