@@ -227,11 +227,12 @@ std::uint64_t at_most(std::uint64_t most, double value) {
 Estimate estimate(const MeshRequest& request, const Budget& budget) {
   const auto points = static_cast<double>(request.pslg.points.size());
   const std::uint64_t most = std::min(budget.max_triangles, budget.triangle_limit);
-  const BySize by_size = by_size_of(request);
-  const double of_layers = triangles_of_layers(request);
-  const double triangles =
-      std::min(by_size.triangles + triangles_by_pieces(request) + kTrianglesPerPoint * points,
-               static_cast<double>(most));
+  const bool samples = !request.sample_points.empty();  // and makes no mesh
+  const BySize by_size = samples ? BySize() : by_size_of(request);
+  const double of_layers = samples ? 0 : triangles_of_layers(request);
+  const double of_pieces = samples ? 0 : triangles_by_pieces(request);
+  const double triangles = std::min(by_size.triangles + of_pieces + kTrianglesPerPoint * points,
+                                    static_cast<double>(most));
   const bool may_stream = budget.max_triangles == Budget{}.max_triangles &&
                           request.min_angle_deg <= kMaxStreamingAngleDeg && !request.keep;
   const std::uint64_t least = bytes_to_make(request.size, request.pslg);

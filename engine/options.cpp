@@ -96,6 +96,16 @@ std::optional<Error> check_options(const MeshRequest& request) {
   }
   if (!(request.simplify >= 0 && std::isfinite(request.simplify)))
     return bad("simplify", text(request.simplify), "0 or more, and finite");
+  if (request.sample_points.size() > kMaxSamplePoints)
+    return bad("sample_points", std::to_string(request.sample_points.size()) + " points",
+               ("at most " + std::to_string(kMaxSamplePoints)).c_str());
+  for (std::size_t i = 0; i < request.sample_points.size(); ++i) {
+    const Point p = request.sample_points[i];
+    if (!(std::fabs(p.x) <= kMaxMagnitude && std::fabs(p.y) <= kMaxMagnitude))
+      return Error{ErrorCode::kBadCoordinate, "sample_points[" + std::to_string(i) + "]",
+                   "sample_points[" + std::to_string(i) + "] is (" + text(p.x) + ", " + text(p.y) +
+                       "); coordinates must be finite, and at most " + text(kMaxMagnitude)};
+  }
   if (request.keep && request.keep->size() > kMaxKeptMarkers) {
     const std::string range = "at most " + std::to_string(kMaxKeptMarkers) + ", or none: all";
     return bad("quality.keep.markers", std::to_string(request.keep->size()) + " markers",

@@ -10,6 +10,7 @@
 #include "engine/base/text.h"
 #include "engine/domain/tolerance.h"
 #include "engine/emit/bounds_error.h"
+#include "engine/emit/digest.h"
 #include "engine/mesh_run.h"
 #include "engine/parallel/narrow_places.h"
 #include "engine/refine/acute_corners.h"
@@ -18,6 +19,7 @@
 #include "engine/refine/mapped_area.h"
 #include "engine/refine/storage/mesh_store.h"
 #include "engine/size/lattice/lattice_map.h"
+#include "engine/size/sampled_bounds.h"
 #include "engine/size/size_warnings.h"
 #include "engine/size/vanishing_size.h"
 
@@ -66,6 +68,7 @@ class Refinement {
       return error;
     if (auto error = check_borders()) return error;
     if (auto error = admit(bound)) return error;
+    if (!ready_.request.sample_points.empty()) return sample();
     if (!ready_.map) return mesh(ConstantArea(bound), 0);
     LatticeMap lattices;
     if (quality_.lattice.exists()) {
@@ -82,6 +85,7 @@ class Refinement {
   }
 
  private:
+  static constexpr int kGrid = 256;  // cells each way
   static constexpr std::uint64_t kUncountable = 1'000'000'000'000'000'000;
 
   // The lengths of edges at markers, for the line on which layers end.
@@ -187,6 +191,71 @@ class Refinement {
                  "the lengths at markers ask for at least " + count_text(pieces) +
                      " edges, which take " + count_text(bytes) + " bytes; the limit is " +
                      std::to_string(most)};
+  }
+
+  // Instead of a mesh.
+  std::optional<Error> sample() {
+    const std::vector<Point>& points = ready_.request.sample_points;
+    summary_.peak_bytes = ready_.size_bytes + (ready_.map ? ready_.map->bytes() : 0) +
+                          ready_.domain.bytes() +
+                          bytes_to_sample(sampled_domain(), points.size() + kGrid * kGrid);
+    if (auto error = context_.need_bytes(summary_.peak_bytes, "the sampled size")) return error;
+    auto bounds = sampled_at(points);
+    if (!bounds) return bounds.error();
+    summary_.sampled_bounds = std::move(*bounds);
+    auto integral = integral_over_grid();
+    if (!integral) return integral.error();
+    // Where a size varies, rows of lattices end.
+    constexpr double kIfItVaries = 1.12;
+    const double by_bounds = triangles_per_bound(quality_.lattice) * *integral;
+    summary_.expected_triangles =
+        std::min(std::max(expected_, by_bounds) * (ready_.map ? kIfItVaries : 1),
+                 static_cast<double>(kUncountable));
+    summary_.size_seconds = clock_.lap();
+    summary_.engine_seconds = summary_.triangulate_seconds + summary_.size_seconds;
+    summary_.size_warnings = size_warnings(ready_.request.size, summary_.box, least_sampled());
+    summary_.digest = Sha256().finish();  // of no chunks
+    context_.enter(Stage::kDone);
+    return std::nullopt;
+  }
+
+  // Of which layers are a part.
+  const Domain& sampled_domain() const {
+    return ready_.layers ? ready_.layers->domain : ready_.ground;
+  }
+
+  Result<std::vector<double>> sampled_at(const std::vector<Point>& points) const {
+    auto bounds = context_.compute(
+        [&] { return sampled_bounds(ready_.size, sampled_domain(), points, context_); });
+    if (!bounds) return bounds;
+    const auto bad = std::find(bounds->begin(), bounds->end(), 0.0);
+    if (bad == bounds->end()) return bounds;
+    const Point at = points[static_cast<std::size_t>(bad - bounds->begin())];
+    return tl::unexpected(bad_size_error({at, &ready_.size}));
+  }
+
+  // Of 1 over the bound, which a size and a region make together.
+  Result<double> integral_over_grid() const {
+    const Box& box = summary_.box;
+    const double dx = box.width() / kGrid, dy = box.height() / kGrid;
+    std::vector<Point> middles;
+    for (int row = 0; row < kGrid; ++row)
+      for (int column = 0; column < kGrid; ++column)
+        middles.push_back({box.min_x + (column + 0.5) * dx, box.min_y + (row + 0.5) * dy});
+    const auto bounds = sampled_at(middles);
+    if (!bounds) return tl::unexpected(bounds.error());
+    double sum = 0;
+    for (const double bound : *bounds)
+      if (bound > 0) sum += 1 / bound;
+    return sum * dx * dy;
+  }
+
+  // 0 if none has a bound.
+  double least_sampled() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const double bound : summary_.sampled_bounds)
+      if (bound < least) least = bound;
+    return std::isinf(least) ? 0 : least;
   }
 
   template <class AreaBound>

@@ -546,6 +546,7 @@ void read_budget(Fields in, Request& request) {
 Request read(Fields in) {
   Request request;
   std::optional<DomainReader> domain;
+  Points sample_points;
   while (in.next()) switch (in.number()) {
       case 1:
         in.message([&](Fields fields) {
@@ -574,11 +575,15 @@ Request read(Fields in) {
       case 10:
         in.read(request.mesh.simplify);
         break;
+      case 11:
+        sample_points.read(in);
+        break;
       default:
         in.skip();
     }
   if (!domain) refuse(ErrorCode::kBadOption, "domain", "domain is missing; it is required");
   request.mesh.pslg = domain->take();
+  request.mesh.sample_points = sample_points.take("sample_points", "coordinates");
   if (!(std::isfinite(request.max_seconds) && request.max_seconds >= 0))
     refuse_number("budget.max_seconds", request.max_seconds, "0 or more, and finite");
   return request;

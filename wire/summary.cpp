@@ -34,6 +34,9 @@ class MessageWriter {
       out.add_element(p.y);
     }
   }
+  void values(std::uint32_t field, const std::vector<double>& values) {
+    out_.add_packed_double(field, values.begin(), values.end());
+  }
   template <class F>
   void message(std::uint32_t field, const char*, F&& show) {
     MessageWriter inner(out_, field);
@@ -60,6 +63,7 @@ class FigureFinder {
   template <class Counts>
   void counts(std::uint32_t, const Counts&) {}
   void points(std::uint32_t, const std::vector<Point>&) {}
+  void values(std::uint32_t, const std::vector<double>&) {}
   template <class F>
   void message(std::uint32_t, const char* name, F&& show) {
     const std::size_t dot = path_.find('.');
@@ -208,6 +212,9 @@ void show(const Summary& summary, std::uint32_t threads, auto& out) {
   if (summary.layers) out.message(36, "layers", [&](auto& in) { show(*summary.layers, in); });
   if (summary.outside.segments > 0)
     out.message(35, "outside", [&](auto& in) { show(summary.outside, in); });
+  if (summary.sampled_bounds.empty()) return;
+  out.values(37, summary.sampled_bounds);
+  out.number(38, "expected_triangles", static_cast<std::uint64_t>(summary.expected_triangles));
 }
 
 }  // namespace

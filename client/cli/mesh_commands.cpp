@@ -17,6 +17,8 @@
 namespace weft::client {
 namespace {
 
+constexpr std::uint32_t kMaxCells = 512;  // whose square the server takes
+
 constexpr char kMeshExamples[] =
     R"(.node writes Triangle's .node, .ele and .poly, .14 and .grd ADCIRC's grid,
 .gr3 SCHISM's, .nc UGRID, .slf TELEMAC's SELAFIN, .xdmf its arrays in .xdmf.bin, .foam OpenFOAM's
@@ -115,6 +117,16 @@ Examples:
   weft lint yard.poly --snap 0.01 --ignore crossing --ignore junction
   weft lint coast.shp --json)";
 
+constexpr char kSizeExamples[] =
+    R"(Takes what `weft mesh` takes, and ends before the mesh: for how fine a domain will be, and how large
+its mesh. A grid has the length of edges in each cell, -9999 outside of the domain and where nothing
+bounds it; with --lonlat it lies in metres of the projection.
+
+Examples:
+  weft size coast.geojson --edge 'min(0.02 + 0.15*shore, 1)' --field shore=distance
+  weft size coast.shp --lonlat --edge '0.1*depth' --field depth=depth.tif --gradation 0.15 -o edges.asc
+  weft size key.poly --size 0.1 --cells-across 4 --json)";
+
 // Submits, as `weft submit` does. Files are written later, by `weft fetch`.
 Result<ExitCode> detach(const MeshOptions& options, std::stop_token stop) {
   if (!options.output.empty() || options.output.draw_quadtree)
@@ -165,6 +177,33 @@ void add_mesh(CLI::App& app, Chosen& chosen) {
       return kept->detach ? detach(kept->options, std::move(stop))
                           : run_mesh(kept->options, std::move(stop));
     };
+  });
+}
+
+void add_size_command(CLI::App& app, Chosen& chosen) {
+  const auto kept = std::make_shared<SizeOptions>();
+  SizeOptions& options = *kept;
+  CLI::App& size = *app.add_subcommand("size", "Tell what a size asks for, without a mesh");
+  size.footer(kSizeExamples);
+  add_domain_and_request_options(size, options.input, options.layers, options.request_options,
+                                 chosen);
+  size.add_option("-o,--output", options.grids,
+                  "Grid of the lengths of edges to write, may be repeated: .asc")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  add_row(size,
+          {"cells", "", "Cells of the grid along the longer side of the domain", "256",
+           number("N", &SizeOptions::cells, 1, kMaxCells)},
+          options);
+  add_projection_flags(size, options.projection);
+  add_server_flags(size, options.server, WithoutServer::kPrivate);
+  add_timeout(size, options.timeout_seconds, "Maximum time of the whole call, in seconds", "none");
+  add_retries(size, options.retries);
+  add_json(size, options.json, "Print one JSON object on standard output");
+  add_quiet(size, options.quiet);
+  size.callback([kept, &size, &chosen] {
+    warn_of_variables(size, kept->request_options);
+    chosen.run = [kept](std::stop_token stop) { return run_size(*kept, std::move(stop)); };
   });
 }
 
@@ -396,6 +435,7 @@ void add_lint(CLI::App& app, Chosen& chosen) {
 
 void add_mesh_commands(CLI::App& app, Chosen& chosen) {
   add_mesh(app, chosen);
+  add_size_command(app, chosen);
   add_draw(app, chosen);
   add_check(app, chosen);
   add_convert(app, chosen);

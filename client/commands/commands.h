@@ -38,6 +38,21 @@ struct MeshOptions {
 };
 Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop);
 
+struct SizeOptions {
+  DataPath input;
+  LayerOptions layers;
+  std::vector<std::filesystem::path> grids;  // to write
+  std::uint32_t cells = 256;                 // along the longer side of the domain
+  RequestOptions request_options;
+  ProjectionOptions projection;
+  ConnectOptions server;
+  std::optional<double> timeout_seconds;
+  std::uint32_t retries = RetryOptions{}.attempts;
+  bool json = false;
+  bool quiet = false;
+};
+Result<ExitCode> run_size(const SizeOptions& options, std::stop_token stop);
+
 struct BatchOptions {
   std::filesystem::path manifest;
   ConnectOptions server;

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import { expect, test } from "vitest";
 import { domainOf } from "../src/domain/examples";
-import { segmentEnds } from "../src/domain/outline";
-import { Fill, Measure, Placement, type GenerateMeshRequest } from "../src/gen/weft/v1/mesh_service_pb";
+import { Fill, Measure, Placement } from "../src/gen/weft/v1/mesh_service_pb";
 import { pythonProgram, shellCommand } from "../src/jobs/commands";
 import { emptyForm, fieldOf, isRequest, requestOf, type FormText } from "../src/request/form";
-import { boundFunction, boundLogarithms, boundsOf } from "../src/view/bounds";
 
 const domain = domainOf([{ rings: [[[0, 0], [1, 0], [1, 1]]] }]);
 const file = { name: "a b.wkt", inMetres: false };
@@ -85,31 +83,4 @@ test("the command of a whole request names its file and its fields", () => {
   expect(shellCommand(made, file)).toContain("--edge '0.1*distance' \\\n  --field distance=distance \\\n");
   expect(pythonProgram(made, file)).toContain('fields={"distance": weft.distance()},');
   expect(pythonProgram(made, file)).toContain('"a b.wkt",');
-});
-
-test("bounds on areas are known if they are numbers, or expressions that the page can evaluate", () => {
-  const boundsFor = (change: Partial<FormText>) => boundsOf(request(change), segmentEnds(domain));
-  expect(boundsFor({ sizeKind: "edge", size: "2" })?.everywhere).toBeCloseTo(Math.sqrt(3));
-  for (const size of ["x", "distance"]) expect(boundsFor({ size }), size).toBeDefined();
-  expect(boundsFor({ size: "width" })).toBeUndefined();
-  for (const size of ["2", "x"]) expect(boundsFor({ size, gradation: "0.1" }), size).toBeUndefined();
-  expect(boundsFor({ sizeKind: "none" })).toBeUndefined();
-});
-
-test("a bound is that of the place and of the region, whichever is lower", () => {
-  const square = domainOf([{ rings: [[[0, 0], [4, 0], [4, 4], [0, 4]]] }]);
-  const bound = (size: Partial<FormText>) => {
-    const { everywhere } = boundsOf(requestOf({ ...emptyForm, sizeKind: "area", ...size }, square) as GenerateMeshRequest, segmentEnds(square))!;
-    return boundFunction({ everywhere, regions: new Map([[7, 0.5]]) });
-  };
-  expect(bound({ size: "x + 2*y" })(1, 2, 0)).toBe(5);
-  expect(bound({ size: "x + 2*y" })(1, 2, 7)).toBe(0.5);
-  expect(bound({ size: "3*distance" })(1, 2, 0)).toBe(3);
-  expect(bound({ sizeKind: "edge", size: "2*x" })(1, 2, 0)).toBeCloseTo(Math.sqrt(3), 12);
-  expect(bound({ size: "3" })(1, 2, 0)).toBe(3);
-});
-
-test("the picture is told one bound for each region", () => {
-  const bounds = { everywhere: 4, regions: new Map([[7, 1], [8, 16]]) };
-  expect([...boundLogarithms(bounds, [0, 7, 8]).slice(0, 4)]).toEqual([2, 0, 2, 100]);
 });

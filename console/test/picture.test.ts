@@ -33,15 +33,15 @@ test("each triangle has a third vertex of its own, with its values", () => {
 test("a picture shows areas, or areas over the bounds at the centroids", () => {
   const areas = pictureOf(square, square.coordinates, new RegionSlots(), () => undefined)!;
   expect([areas.shownLow, areas.shownHigh]).toEqual([-1, -1]);
-  const over = (x: number, _y: number, region: number) => (region === 9 ? 4 : x);
+  const over = [...square.regions].map((region) => (region === 9 ? 4 : 2 / 3));
   const ratios = pictureOf(square, square.coordinates, new RegionSlots(), () => undefined, over)!;
   expect(ratios.shownLow).toBe(-3); // half a unit over 4, in the region
-  expect(ratios.shownHigh).toBeCloseTo(Math.log2(3 / 4)); // over 2/3, at the other's centroid
+  expect(ratios.shownHigh).toBeCloseTo(Math.log2(3 / 4)); // over 2/3, in the other
   expect([ratios.logAreaLow, ratios.logAreaHigh]).toEqual([-1, -1]);
   const shown = [2, 5].map((i) => ratios.values[4 * ratios.indices[i] + 1]);
   expect(shown).toEqual([255, 0]);
   for (const none of [Infinity, NaN, -1])
-    expect(pictureOf(square, square.coordinates, new RegionSlots(), () => undefined, () => none)!.shownHigh).toBe(-8);
+    expect(pictureOf(square, square.coordinates, new RegionSlots(), () => undefined, [none, none])!.shownHigh).toBe(-8);
 });
 
 test("an edge inside is drawn once, those on segments after it", () => {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "files/formats/raster.h"
 
+#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
@@ -10,6 +12,7 @@
 #include "files/base/words.h"
 #include "files/bytes/file_contents.h"
 #include "files/bytes/line_scanner.h"
+#include "files/bytes/text_writer.h"
 #include "files/formats/mesh_formats.h"
 
 namespace weft::files {
@@ -155,6 +158,29 @@ Result<Raster> read_raster(const std::filesystem::path& path, RasterValues wante
   const auto file = read_text_file(path, kMaxFileBytes);
   if (!file) return tl::unexpected(file.error());
   return Reader(path.string(), file->text(), wanted).read();
+}
+
+void write_raster(const Raster& grid, OutputFile& file) {
+  put_line(file, "ncols", grid.columns);
+  put_line(file, "nrows", grid.rows);
+  put_line(file, "xllcenter", grid.x);
+  put_line(file, "yllcenter", grid.y);
+  if (grid.dx == grid.dy) {
+    put_line(file, "cellsize", grid.dx);
+  } else {
+    put_line(file, "dx", grid.dx);
+    put_line(file, "dy", grid.dy);
+  }
+  put_line(file, "NODATA_value -9999");
+  for (std::size_t row = grid.rows; row-- > 0;)
+    for (std::size_t column = 0; column < grid.columns; ++column) {
+      const double value = grid.values[row * grid.columns + column];
+      if (std::isfinite(value))
+        file.number(value);
+      else
+        file.put("-9999");
+      file.put(column + 1 < grid.columns ? ' ' : '\n');
+    }
 }
 
 }  // namespace weft::files

@@ -23,6 +23,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "files/base/atomic_file.h"
 #include "files/base/error.h"
 
 namespace weft::files {
@@ -45,5 +46,9 @@ enum class RasterValues { kPositive, kAny };
 // Errors (kUnreadableInput) name file, line and column.
 Result<Raster> read_raster(const std::filesystem::path& path,
                            RasterValues wanted = RasterValues::kPositive);
+
+// Cells without a value, NaN or infinite, have -9999. The failure of a write is the file's
+// (OutputFile).
+void write_raster(const Raster& grid, OutputFile& file);
 
 }  // namespace weft::files

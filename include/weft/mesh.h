@@ -201,6 +201,12 @@ struct Summary {
   // The costliest one, if it has at least a fifth of a mesh of a thousand triangles or more.
   std::optional<NarrowPlace> narrow;
 
+  // Only with MeshRequest::sample_points. At each, the bound on the area of a triangle with its
+  // centroid there: the least of the size and the region's. Infinity for none, NaN outside of the
+  // domain.
+  std::vector<double> sampled_bounds;
+  double expected_triangles = 0;  // of a mesh, about
+
   // Seconds of wall time.
   double triangulate_seconds = 0;
   double size_seconds = 0;    // the boxes of the size field

@@ -14,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "weft/error.h"
 #include "weft/mesh.h"
@@ -33,6 +34,7 @@ inline constexpr std::size_t kMaxPeriodicPairs = 16;
 inline constexpr std::size_t kMaxLayers = 16;
 inline constexpr std::uint32_t kMaxLayerRows = 200;
 inline constexpr double kMaxLayerRatio = 10;
+inline constexpr std::size_t kMaxSamplePoints = std::size_t{1} << 18;
 
 // Two sides of the domain that repeat each other, by the markers of their segments: a translation
 // or a rotation takes one to the other, and the inside of the domain at one to the outside at the
@@ -95,6 +97,9 @@ struct MeshRequest {
   // (Unrefined::without_exemption) is a result. If not, it ends with kBoundsNotMet, after its
   // chunks.
   bool allow_unrefined = false;
+  // Not empty: no mesh is made, but for Summary::sampled_bounds, the size at these points. At most
+  // kMaxSamplePoints. REQUIRES: coordinates are at most kMaxMagnitude.
+  std::vector<Point> sample_points = {};
   // Most triangles in a leaf of the quadtree: another mesh. For tests. Unset: by the mesh's size.
   std::optional<double> leaf_triangles = std::nullopt;
 };

@@ -35,6 +35,7 @@ struct Amounts {
   std::uint64_t kept = 0;      // markers of segments
   std::uint64_t periodic = 0;  // pairs of sides
   std::uint64_t layers = 0;
+  std::uint64_t sample_points = 0;
   // Summed over all fields that the size may name.
   std::uint64_t fields = 0;
   std::uint64_t field_points = 0;
@@ -75,6 +76,9 @@ std::optional<Failure> check(const Amounts& amounts, const Limits& limits) {
     return f;
   if (auto f = over("quality.layers", "layers", amounts.layers, std::uint64_t{kMaxLayers}))
     return f;
+  if (auto f =
+          over("sample_points", "points", amounts.sample_points, std::uint64_t{kMaxSamplePoints}))
+    return f;
   const auto of_fields = [](std::string_view unit, std::uint64_t value, std::uint64_t limit) {
     return over("size.fields", unit, value, limit);
   };
@@ -110,6 +114,9 @@ std::optional<Failure> check_limits(const WireScan& scan, const Limits& limits) 
       .kept = scan.count(*v1::Keep::descriptor(), v1::Keep::kMarkersFieldNumber),
       .periodic = scan.count(*v1::Quality::descriptor(), v1::Quality::kPeriodicFieldNumber),
       .layers = scan.count(*v1::Quality::descriptor(), v1::Quality::kLayersFieldNumber),
+      .sample_points = scan.count(*v1::GenerateMeshRequest::descriptor(),
+                                  v1::GenerateMeshRequest::kSamplePointsFieldNumber) /
+                       2,
       .fields = scan.count(*v1::SizeField::descriptor(), v1::SizeField::kFieldsFieldNumber),
       .field_points =
           scan.count(*v1::Distance::descriptor(), v1::Distance::kPointsFieldNumber) / 2 +
@@ -142,7 +149,8 @@ std::optional<Failure> check_limits(const v1::GenerateMeshRequest& request, cons
       .sizes_at = count(request.size().at_size(), 1),
       .kept = count(request.quality().keep().markers_size(), 1),
       .periodic = count(request.quality().periodic_size(), 1),
-      .layers = count(request.quality().layers_size(), 1)};
+      .layers = count(request.quality().layers_size(), 1),
+      .sample_points = count(request.sample_points_size(), 2)};
   for (const v1::NamedField& field : request.size().fields()) {
     amounts.fields += 1;
     amounts.field_points += count(field.distance().points_size(), 2);

@@ -311,11 +311,29 @@ test("a run is cancelled, and with it the server's work; what has come stays", a
   await phase(page, "cancelled");
 });
 
-for (const [measure, size] of [["edge", "0.25 + 0.1*distance + 0.05*x"], ["area", "0.02 + 0.01*x"]])
-  test(`triangles have the colour of their area over a bound that is an expression: ${measure}`, async (t) => {
+test("the size is shown before there is a mesh, with about how many triangles it asks for", async (t) => {
+  const { page } = await meshPage(t);
+  const about = async () => Number((await textMatches(page, ".desk-foot", /about ([\d,]+) triangles/))[1].replaceAll(",", ""));
+  await fill(page, "#size", "0.1");
+  await page.waitForSelector(".legend", { hidden: true }); // the same everywhere
+  const even = await until("the size is known", async () => (await about()) > 6000 && about());
+  assert.ok(even < 10_000, `${even}`);
+  await fill(page, "#size", "0.1 + 0.1*x");
+  await textMatches(page, ".legend", /Length of edges, as asked for/);
+  await until("a larger size is known", async () => (await about()) < even / 4);
+  await fill(page, "#gradation", "0.01");
+  await until("the limit is shown", async () => (await about()) > even / 2);
+  await fill(page, "#size", "0.1 +");
+  await page.waitForFunction(() => !/about/.test(document.querySelector(".desk-foot").innerText));
+  await page.waitForSelector(".legend", { hidden: true });
+});
+
+for (const [measure, size, gradation] of [["edge", "0.25 + 0.1*distance + 0.05*x", ""], ["area", "0.02 + 0.01*x", ""], ["edge", "0.25 + 0.1*distance + 0.05*x", "0.08"]])
+  test(`triangles have the colour of their area over the bound that the server tells: ${measure} ${gradation}`, async (t) => {
     const { page } = await meshPage(t);
     if (measure === "area") await byArea(page, size);
     else await fill(page, "#size", size);
+    await fill(page, "#gradation", gradation);
     await press(page, "Mesh");
     await phase(page, "done");
     await until("the mesh is drawn", () => areDrawn(page, 1));

@@ -42,6 +42,7 @@ def keys(value, path=""):
     ["mesh", "two.geojson", "-o", "b.vtu"],
     ["mesh", COAST, "-o", "c.14", "--lonlat", "--edge", "20000", "--simplify", "1", "--snap", "100"],
     ["mesh", KEY, "-o", "d.vtu", "--size", "min(1, 1e-30 + 0.1*((x-20)^2 + (y-46)^2))", "--allow-unrefined"],
+    ["size", COAST, "--lonlat", "--edge", "1e7"],
     ["info", "key.vtu", "--quality", "--size", "0.5"],
     ["check", "key.vtu", "--domain", KEY, "--size", "0.5"],
     ["check", "key.vtu", "--domain", KEY, "--size", "0.1"],

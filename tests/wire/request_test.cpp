@@ -215,6 +215,7 @@ v1::GenerateMeshRequest full_request() {
   request.set_want_quadtree(true);
   request.set_allow_unrefined(true);
   request.set_simplify(0.75);
+  for (const double x : {0.5, 1., 2., 0.25}) request.add_sample_points(x);
   return request;
 }
 
@@ -280,6 +281,7 @@ TEST(ReadRequest, BringsTheOptions) {
   EXPECT_EQ(request->mesh.keep, (std::vector<std::int32_t>{-1, 300}));
   EXPECT_EQ(sides_of(*request), (Sides{{-4, 2}, {0, 3}}));
   EXPECT_EQ(request->mesh.simplify, 0.75);
+  EXPECT_EQ(request->mesh.sample_points, (std::vector<Point>{{0.5, 1}, {2, 0.25}}));
   EXPECT_TRUE(request->mesh.allow_unrefined);
   EXPECT_EQ(request->max_triangles, std::uint64_t{1} << 40);
   EXPECT_EQ(request->max_bytes, 11u);
@@ -355,6 +357,9 @@ TEST(ReadRequest, NamesArraysWhoseLengthsMakeNoSense) {
   expect("domain.segment_markers", [](v1::Domain& domain) { domain.add_segment_markers(1); });
   expect("domain.segment_areas", [](v1::Domain& domain) { domain.add_segment_areas(1); });
   expect("domain.arc_bulges", [](v1::Domain& domain) { domain.add_arc_bulges(1); });
+  v1::GenerateMeshRequest odd = full_request();
+  odd.add_sample_points(1);
+  EXPECT_EQ(fault_of(odd), (std::pair{ErrorCode::kBadArray, std::string("sample_points")}));
 }
 
 TEST(ReadRequest, NamesOptionsThatAreNone) {

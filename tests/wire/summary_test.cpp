@@ -63,12 +63,17 @@ TEST(Figure, IsTheNumberThatTheMessageHas) {
   summary.narrow = NarrowPlace{51, 52, {53, 54}, 55, 56, 57, 58};
   summary.outside = {65, 66, {67, 68}};
   summary.simplified = Simplification{57, 58, 59, 60, 63, 64, 61, 62, {{71, 72}, {73, 74}}};
+  summary.sampled_bounds = {75, 76};
+  summary.expected_triangles = 77.5;
   summary.engine_seconds = 18;
   v1::Summary message;
   ASSERT_TRUE(message.ParseFromString(write_summary(summary, 3)));
   EXPECT_EQ(message.GetReflection()->GetUnknownFields(message).field_count(), 0);
-  EXPECT_EQ(compare(message, summary, ""), 4 + 11 + 9 + 3 + 8 + 4 + 8 + 1);
+  EXPECT_EQ(compare(message, summary, ""), 5 + 11 + 9 + 3 + 8 + 4 + 8 + 1);
   EXPECT_EQ(figure(summary, 3, "exact_predicates"), 0);
+  EXPECT_EQ(message.expected_triangles(), 77u);
+  const auto& bounds = message.sampled_bounds();
+  EXPECT_EQ(std::vector<double>(bounds.begin(), bounds.end()), (std::vector<double>{75, 76}));
   const auto& cuts = message.simplification().cuts();
   EXPECT_EQ(std::vector<double>(cuts.begin(), cuts.end()), (std::vector<double>{71, 72, 73, 74}));
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The first page: a domain, what its mesh must satisfy, and the mesh as it comes.
-import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
-import { explain, jobs } from "../client";
+import { useCallback, useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
+import { explain, jobs, meshes } from "../client";
 import { readFile, type Finding } from "../domain/domain-file";
 import { domainOf, examples, geoJsonOf, type Example, type Polygon } from "../domain/examples";
 import { regionNamesOf } from "../domain/names";
 import { boxOf, segmentEnds } from "../domain/outline";
 import { Downloads } from "../download/downloads";
-import type { Domain, GenerateMeshRequest } from "../gen/weft/v1/mesh_service_pb";
+import { Measure, type Domain, type GenerateMeshRequest } from "../gen/weft/v1/mesh_service_pb";
 import { pythonProgram, shellCommand } from "../jobs/commands";
 import { Copy } from "../jobs/copy";
 import { DomainPanel } from "../mesh/domain-panel";
@@ -17,15 +17,13 @@ import { RunStatus } from "../mesh/run-status";
 import { SketchBar } from "../mesh/sketch-bar";
 import { emptyForm, fieldOf, isRequest, requestOf, type FormText, type Problems } from "../request/form";
 import { navigate } from "../router";
-import { boundAt } from "../size/bound-at";
-import { heatMapOf } from "../size/heat-map";
-import { figure } from "../text";
-import { boundsOf } from "../view/bounds";
+import { count, figure } from "../text";
 import { Scale } from "../view/legend";
 import { MeshFigures } from "../view/mesh-figures";
 import { useMeshRun, useRunState } from "../view/mesh-run";
 import { MeshView } from "../view/mesh-view";
 import type { Backdrop } from "../view/marks";
+import { gridOver, heatMapOf, middlesOf, sampleSize } from "../view/sampled-size";
 import { Sketch } from "../view/sketch";
 import "../mesh/mesh.css";
 
@@ -53,22 +51,46 @@ const unbounded: Partial<FormText> = {
 // Where a first drawing goes.
 const sheet = { ends: new Float64Array(), box: [0, 0, 10, 7] as [number, number, number, number] };
 
-// Follows the form after a pause, so that typing stays smooth.
-function useHeatMap(form: FormText, domain: Domain | undefined, ends: Float64Array) {
-  const [heat, setHeat] = useState<Backdrop & { low: number; high: number }>();
+// To two digits.
+const rounded = (n: number) => Number(n.toPrecision(2));
+
+// Of a domain with more, the server is not asked while a form is filled in.
+const mostFollowed = 100_000; // points
+
+interface Preview {
+  triangles: number; // that the mesh will have, about
+  heat: (Backdrop & { low: number; high: number }) | undefined; // if the size varies
+}
+
+// What the form asks for, after a pause, so that typing stays smooth.
+function usePreview(form: FormText, domain: Domain | undefined, ends: Float64Array): Preview | undefined {
+  const [preview, setPreview] = useState<Preview>();
   useEffect(() => {
-    const timer = setTimeout(() => {
-      const made = domain && heatMapOf(form, domain, ends, boxOf(domain));
-      if (!made) return setHeat(undefined);
+    const stop = new AbortController();
+    const ask = async () => {
+      const box = domain && boxOf(domain);
+      const request = domain && requestOf(form, domain);
+      setPreview(undefined);
+      if (!box || !request || !isRequest(request) || domain.points.length > 2 * mostFollowed) return;
+      const grid = gridOver(box);
+      // What is wrong with the request is told when it is sent.
+      const told = await sampleSize(meshes, request, middlesOf(grid), { signal: stop.signal }).catch(() => undefined);
+      if (!told || stop.signal.aborted) return;
+      const made = heatMapOf(grid, told.bounds, request.size?.measure ?? Measure.AREA);
+      if (!made) return setPreview({ triangles: told.triangles, heat: undefined });
       const image = document.createElement("canvas");
       image.width = made.pixels.width;
       image.height = made.pixels.height;
       image.getContext("2d")!.putImageData(made.pixels, 0, 0);
-      setHeat({ ...made, image, ends });
-    }, 150);
-    return () => clearTimeout(timer);
-  }, [form.size, form.sizeKind, domain]);
-  return heat;
+      setPreview({ triangles: told.triangles, heat: { ...made, image, ends } });
+    };
+    const timer = setTimeout(() => void ask(), 250);
+    return () => {
+      clearTimeout(timer);
+      stop.abort();
+    };
+  }, [form, domain]);
+  return preview;
 }
 
 export function MeshPage() {
@@ -90,8 +112,15 @@ export function MeshPage() {
   const { domain } = source;
   const ends = useMemo(() => segmentEnds(domain), [domain]);
   const outline = useMemo(() => (sketch ? sheet : { ends, box: boxOf(domain) }), [domain, sketch]);
-  const heat = useHeatMap(form, sketch ? undefined : domain, ends);
-  const bounds = useMemo(() => boundsOf(asked?.request, ends), [asked]);
+  const preview = usePreview(form, sketch ? undefined : domain, ends);
+  const heat = preview?.heat;
+  const boundAt = useCallback(
+    async (centroid: [number, number]) => {
+      const told = asked && (await sampleSize(meshes, asked.request, centroid, {}).catch(() => undefined));
+      return told && told.bounds[0] < Infinity ? told.bounds[0] : undefined;
+    },
+    [asked],
+  );
   const regionNames = useMemo(() => regionNamesOf(asked?.request), [asked]);
 
   const use = (next: Source, change: Partial<FormText>) => {
@@ -232,6 +261,7 @@ export function MeshPage() {
           <button type="button" disabled={sketch !== undefined} title="The server keeps the mesh of a job" onClick={() => void submit()}>
             As a job
           </button>
+          {preview && preview.triangles > 0 && <span class="faint">about {count(rounded(preview.triangles))} triangles</span>}
           {submitProblem && (
             <p class="problem" role="alert">
               {submitProblem}
@@ -239,7 +269,7 @@ export function MeshPage() {
           )}
         </div>
       </form>
-      <MeshView run={run} regionNames={regionNames} outline={outline} bounds={bounds} sketch={sketch} backdrop={heat}>
+      <MeshView run={run} regionNames={regionNames} outline={outline} isAsked={asked !== undefined} sketch={sketch} backdrop={heat}>
         {heat && state.chunks === 0 && (
           <Scale
             title={form.sizeKind === "edge" ? "Length of edges, as asked for" : "Area, as asked for"}
@@ -257,7 +287,7 @@ export function MeshPage() {
           <MeshFigures
             run={run}
             regionNames={regionNames}
-            boundAt={asked && ((centroid, region) => boundAt(asked.form, domain, ends, centroid, region))}
+            boundAt={asked && boundAt}
           />
           {asked && state.phase === "done" && (
             <>

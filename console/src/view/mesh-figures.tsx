@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the page counts of a run while it comes: histograms, the worst triangles, the picked one.
+import { useEffect, useState } from "preact/hooks";
 import { count, figure } from "../text";
-import type { PlaceBound } from "../size/bound-at";
 import type { Names } from "../domain/names";
 import { css, scaleColour } from "./colours";
 import { regionText } from "./legend";
@@ -44,8 +44,8 @@ function Histogram({ title, bins, ends }: { title: string; bins: Bin[]; ends: st
   );
 }
 
-// The bound on the area of a triangle at a centroid.
-export type BoundAt = (centroid: [number, number], region: number) => PlaceBound | undefined;
+// The bound on the area of a triangle at a centroid; undefined if there is none, or it is not known.
+export type BoundAt = (centroid: [number, number]) => Promise<number | undefined>;
 
 interface PickedProps {
   picked: PickedTriangle;
@@ -56,7 +56,15 @@ interface PickedProps {
 
 function Picked({ picked, boundAt, names, run }: PickedProps) {
   const [[ax, ay], [bx, by], [cx, cy]] = picked.corners;
-  const bound = boundAt?.([(ax + bx + cx) / 3, (ay + by + cy) / 3], picked.region);
+  const [bound, setBound] = useState<number>();
+  useEffect(() => {
+    let late = false;
+    setBound(undefined);
+    void boundAt?.([(ax + bx + cx) / 3, (ay + by + cy) / 3]).then((area) => late || setBound(area));
+    return () => {
+      late = true;
+    };
+  }, [picked, boundAt]);
   return (
     <section class="picked" aria-live="polite" aria-label="Picked triangle">
       <header>
@@ -72,9 +80,9 @@ function Picked({ picked, boundAt, names, run }: PickedProps) {
         <dd>{figure(picked.area)}</dd>
         {bound && (
           <>
-            <dt>{bound.isExact ? "Bound" : "Bound, at most"}</dt>
+            <dt>Bound</dt>
             <dd>
-              {figure(bound.area)} ({((100 * picked.area) / bound.area).toFixed(1)} %)
+              {figure(bound)} ({((100 * picked.area) / bound).toFixed(1)} %)
             </dd>
           </>
         )}

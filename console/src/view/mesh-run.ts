@@ -12,7 +12,6 @@ import { useEffect, useState } from "preact/hooks";
 import { noteFailure } from "../client";
 import { GenerateMeshRequestSchema, SummarySchema, type Summary } from "../gen/weft/v1/mesh_service_pb";
 import { currentSession } from "../session";
-import type { Bounds } from "./bounds";
 import type { Census } from "./census";
 import type { FromWorker, ToWorker } from "./messages";
 import type { Box, ChunkPicture } from "./picture";
@@ -119,9 +118,9 @@ export class MeshRun {
     this.say({ type: "lines", chunk });
   }
 
-  // The painter is given all chunks again, one after the other, from now on with areas over these
-  // bounds instead of areas if there are any. It has forgotten those from before.
-  wantPictures(over: Bounds | undefined): void {
+  // The painter is given all chunks again, one after the other, with areas over their bounds or with areas
+  // alone. It has forgotten those from before. REQUIRES with `over`: the run has ended, and no job began it.
+  wantPictures(over: boolean): void {
     this.say({ type: "pictures", wish: ++this.wish, over });
   }
 

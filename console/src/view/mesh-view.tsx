@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mesh to look at, with its tools and its legend.
 //
-//   <MeshView run={run} regionNames={regionNamesOf(request)} bounds={boundsOf(summary.request)} />
+//   <MeshView run={run} regionNames={regionNamesOf(request)} />
 import type { ComponentChildren } from "preact";
 import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Names } from "../domain/names";
 import { useTheme } from "../theme";
-import type { Bounds } from "./bounds";
 import type { Census } from "./census";
 import type { ColourBy } from "./colours";
 import { Legend } from "./legend";
@@ -21,7 +20,7 @@ export interface MeshViewProps {
   run: MeshRun;
   regionNames: Names;
   outline?: { ends: Float64Array; box: Box | undefined } | undefined; // x, y of both ends of each segment
-  bounds?: Bounds | undefined; // of areas, for their colour
+  isAsked?: boolean; // whether the page has made the request, so that the server tells its bounds on areas
   sketch?: Sketch | undefined; // takes clicks and keys while there is one
   backdrop?: Backdrop | undefined; // until the first chunks come
   children?: ComponentChildren; // above the canvas
@@ -47,7 +46,7 @@ function areaRange({ areas, firstArea }: Census): [number, number] {
   return [firstArea + first / 2, firstArea + areas.length / 2];
 }
 
-export function MeshView({ run, regionNames, outline, bounds, sketch, backdrop, children }: MeshViewProps) {
+export function MeshView({ run, regionNames, outline, isAsked, sketch, backdrop, children }: MeshViewProps) {
   const state = useRunState(run);
   const theme = useTheme();
   const canvas = useRef<HTMLCanvasElement>(null);
@@ -58,7 +57,8 @@ export function MeshView({ run, regionNames, outline, bounds, sketch, backdrop, 
   const [edges, setEdges] = useState(true);
   const [quadtree, setQuadtree] = useState(false);
   const [worst, setWorst] = useState(false);
-  const by = wanted === "ratio" && !bounds ? "angle" : wanted;
+  const hasBounds = isAsked && state.phase !== "running";
+  const by = wanted === "ratio" && !hasBounds ? "angle" : wanted;
   const range = useMemo<[number, number]>(
     () => (by === "angle" ? [0, 60] : by === "area" && state.census?.areas.length ? areaRange(state.census) : [0, 1]),
     [by, state.census],
@@ -72,8 +72,8 @@ export function MeshView({ run, regionNames, outline, bounds, sketch, backdrop, 
   // At once: a mesh that is asked for next is not cleared away.
   useLayoutEffect(() => viewport?.outline(outline?.ends ?? none, outline?.box), [viewport, outline]);
   useEffect(
-    () => viewport?.set({ by, range, edges, quadtree, worst, dark: theme === "dark", bounds, sketch, backdrop }),
-    [viewport, by, range, edges, quadtree, worst, theme, bounds, sketch, backdrop],
+    () => viewport?.set({ by, range, edges, quadtree, worst, dark: theme === "dark", sketch, backdrop }),
+    [viewport, by, range, edges, quadtree, worst, theme, sketch, backdrop],
   );
   useEffect(() => {
     if (state.found > 0) viewport?.showPicked();
@@ -86,7 +86,7 @@ export function MeshView({ run, regionNames, outline, bounds, sketch, backdrop, 
       q: () => setQuadtree(!quadtree),
       w: () => setWorst(!worst),
       c: () => {
-        const usable = colourings.map(([name]) => name).filter((name) => name !== "ratio" || bounds);
+        const usable = colourings.map(([name]) => name).filter((name) => name !== "ratio" || hasBounds);
         setBy(usable[(usable.indexOf(by) + 1) % usable.length]);
       },
     };
@@ -104,7 +104,7 @@ export function MeshView({ run, regionNames, outline, bounds, sketch, backdrop, 
           Colour by{" "}
           <select value={by} onChange={(event) => setBy(event.currentTarget.value as ColourBy)}>
             {colourings.map(([name, text]) => (
-              <option value={name} disabled={name === "ratio" && !bounds}>
+              <option value={name} disabled={name === "ratio" && !hasBounds}>
                 {text}
               </option>
             ))}

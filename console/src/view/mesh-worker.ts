@@ -8,11 +8,11 @@ import { createGrpcWebTransport } from "@connectrpc/connect-web";
 import { PackedResponseSchema, type PackedChunk } from "../gen/console/packed_pb";
 import { JobService } from "../gen/weft/v1/job_service_pb";
 import { GenerateMeshRequestSchema, MeshService, SummarySchema } from "../gen/weft/v1/mesh_service_pb";
-import { boundFunction, type BoundOf } from "./bounds";
 import { Counter } from "./census";
 import type { FromWorker, ToWorker } from "./messages";
-import { unpackChunk } from "./packed";
+import { unpackChunk, type MeshChunk } from "./packed";
 import { linesOf, pictureOf, RegionSlots, type ChunkPicture } from "./picture";
+import { mostPoints, sampleSize } from "./sampled-size";
 import { MeshStore } from "./store";
 
 const mostUndrawn = 8;
@@ -27,7 +27,8 @@ const untilDrawn: (() => void)[] = [];
 let chunks = 0;
 let lastCensus = 0;
 let wish = 0; // what pictures are for
-let over: BoundOf | undefined; // that pictures show areas over
+let started: { request: Uint8Array | string; token: string } | undefined;
+const bounds = new Map<number, ArrayLike<number>>(); // on areas, of chunks that were asked for, by their numbers
 
 const say = (message: FromWorker, transfer: Transferable[] = []) => postMessage(message, { transfer });
 
@@ -46,12 +47,40 @@ async function room(): Promise<void> {
   while (undrawn >= mostUndrawn) await new Promise<void>((resolve) => untilDrawn.push(resolve));
 }
 
-async function sayPicturesAgain(): Promise<void> {
+const callOptions = (token: string) => ({ headers: token ? { authorization: `Bearer ${token}` } : undefined });
+const transport = createGrpcWebTransport({ baseUrl: self.location.origin });
+
+// Has the bounds of as many of these chunks as a request may ask for; NaN if the server does not tell.
+async function ask(chunks: MeshChunk[]): Promise<void> {
+  const { request, token } = started!;
+  const { coordinates } = store;
+  const points: number[] = [];
+  const asked: MeshChunk[] = [];
+  for (const chunk of chunks) {
+    if (asked.length > 0 && points.length / 2 + chunk.triangles.length / 3 > mostPoints) break;
+    asked.push(chunk);
+    for (let t = 0; t < chunk.triangles.length; t += 3)
+      for (const d of [0, 1])
+        points.push([0, 1, 2].reduce((sum, i) => sum + coordinates[2 * chunk.triangles[t + i] + d], 0) / 3);
+  }
+  const own = fromBinary(GenerateMeshRequestSchema, request as Uint8Array);
+  const told = await sampleSize(createClient(MeshService, transport), own, points, callOptions(token)).catch(() => undefined);
+  let first = 0;
+  for (const { index, triangles } of asked) {
+    const count = triangles.length / 3;
+    bounds.set(index, told ? told.bounds.slice(first, first + count) : new Float32Array(count).fill(NaN));
+    first += count;
+  }
+}
+
+async function sayPicturesAgain(over: boolean): Promise<void> {
   const own = wish;
-  for (const chunk of store.chunks()) {
+  const chunks = [...store.chunks()];
+  for (const [i, chunk] of chunks.entries()) {
     await room();
+    if (over && !bounds.has(chunk.index)) await ask(chunks.slice(i));
     if (own !== wish) return; // they are wanted otherwise now
-    const picture = pictureOf(chunk, store.coordinates, slots, () => {}, over);
+    const picture = pictureOf(chunk, store.coordinates, slots, () => {}, over ? bounds.get(chunk.index) : undefined);
     if (picture) sayPicture({ type: "again", wish, picture });
   }
 }
@@ -69,7 +98,6 @@ function take(packed: PackedChunk): void {
       }
       return { triangle: chunk.firstTriangle + triangle, chunk: chunk.index, x, y };
     }),
-    over,
   );
   if (picture) {
     store.keep(chunk, picture.box);
@@ -85,17 +113,13 @@ function packed<I extends DescMessage, O extends DescMessage>(method: DescMethod
 }
 
 async function read(request: Uint8Array | string, token: string): Promise<void> {
-  const transport = createGrpcWebTransport({ baseUrl: self.location.origin });
   const method = {
     generateMesh: packed(MeshService.method.generateMesh),
     fetchMesh: packed(JobService.method.fetchMesh),
   };
   const service = { ...MeshService, method, methods: Object.values(method) };
   const client = createClient(service, transport);
-  const options = {
-    signal: stop.signal,
-    headers: token ? { authorization: `Bearer ${token}` } : undefined,
-  };
+  const options = { signal: stop.signal, ...callOptions(token) };
   const stream =
     typeof request === "string"
       ? client.fetchMesh({ id: request }, options)
@@ -136,6 +160,7 @@ async function read(request: Uint8Array | string, token: string): Promise<void> 
 onmessage = ({ data }: MessageEvent<ToWorker>) => {
   switch (data.type) {
     case "start":
+      started = data;
       read(data.request, data.token).catch((error: unknown) => {
         sayCensus();
         const { code, rawMessage, details } = ConnectError.from(error);
@@ -164,8 +189,7 @@ onmessage = ({ data }: MessageEvent<ToWorker>) => {
     }
     case "pictures":
       wish = data.wish;
-      over = data.over && boundFunction(data.over);
-      void sayPicturesAgain();
+      void sayPicturesAgain(data.over);
       break;
     case "pick":
       say({ type: "picked", picked: store.pick(data.x, data.y) });

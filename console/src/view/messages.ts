@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the page and its mesh worker say to each other.
-import type { Bounds } from "./bounds";
 import type { Census } from "./census";
 import type { ChunkPicture } from "./picture";
 import type { PickedTriangle } from "./store";
@@ -13,8 +12,8 @@ export type ToWorker =
   | { type: "drawn" }
   | { type: "lines"; chunk: number }
   // The page wants all chunks again, because it has lost them, or because they are to show areas over
-  // these bounds, or areas alone. Pictures carry the number of the wish that they are for; the first is 0.
-  | { type: "pictures"; wish: number; over: Bounds | undefined }
+  // their bounds, or areas alone. Pictures carry the number of the wish that they are for; the first is 0.
+  | { type: "pictures"; wish: number; over: boolean }
   | { type: "pick"; x: number; y: number }
   | { type: "find"; triangle: number };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the graphics card needs of a chunk: its triangles as they are, and an image of it for when
 // they are smaller than pixels.
-import type { BoundOf } from "./bounds";
 import type { MeshChunk } from "./packed";
 import { thumbnailOf } from "./thumbnail";
 import { figures } from "./triangle";
@@ -101,13 +100,14 @@ const fullFrom = 0.35;
 const beside = [[-1, 0], [1, 0], [0, -1], [0, 1], [-1, -1], [1, -1], [-1, 1], [1, 1]];
 
 // Undefined if the chunk has no triangles. `coordinates` are those of the whole mesh so far;
-// `visit` is told of each triangle. With `over`, areas over these bounds are shown instead of areas.
+// `visit` is told of each triangle. With `over`, areas over these bounds, one for
+// each triangle, are shown instead of areas.
 export function pictureOf(
   chunk: MeshChunk,
   coordinates: Float64Array,
   slots: RegionSlots,
   visit: (triangle: number, area: number, minAngle: number) => void,
-  over?: BoundOf,
+  over?: ArrayLike<number>,
 ): ChunkPicture | undefined {
   const count = chunk.triangles.length / 3;
   if (count === 0) return undefined;
@@ -132,9 +132,7 @@ export function pictureOf(
     angle[t] = f.minAngle;
     logArea[t] = Math.log2(Math.max(f.area, 1e-300));
     if (!over) continue;
-    const x = (coordinates[a] + coordinates[b] + coordinates[c]) / 3;
-    const y = (coordinates[a + 1] + coordinates[b + 1] + coordinates[c + 1]) / 3;
-    const ratio = Math.log2(f.area / over(x, y, chunk.regions.length > 0 ? chunk.regions[t] : 0));
+    const ratio = Math.log2(f.area / over[t]);
     shown[t] = Math.min(Math.max(Number.isNaN(ratio) ? -Infinity : ratio, leastRatio), mostRatio);
   }
   const areas = new Scale(logArea);

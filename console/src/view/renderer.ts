@@ -62,7 +62,7 @@ const shifted = ({ left, low, right, high }: Rect, dx: number, dy: number): Rect
   high: high + dy,
 });
 
-const nameOf = (style: Style): string => JSON.stringify({ ...style, bounds: [...style.bounds] });
+const nameOf = (style: Style): string => JSON.stringify(style);
 
 export class Renderer {
   private readonly scene: Scene;

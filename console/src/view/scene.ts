@@ -10,7 +10,6 @@ export interface Style {
   by: ColourBy;
   edges: boolean;
   range: [number, number]; // of the scale: degrees, logarithms of area to base 2, or ratios
-  bounds: Float32Array; // logarithm of what "ratio" divides by, for each of 256 slots
   plain: [number, number, number]; // 0 to 1
   ink: [number, number, number]; // of edges
   outline: [number, number, number]; // of the domain's segments
@@ -67,7 +66,6 @@ export class Scene {
   private readonly chunks = new Map<number, Chunk>();
   private readonly programs: Record<keyof typeof shaders, Program>;
   private readonly table: WebGLTexture;
-  private readonly bounds: WebGLTexture;
   private readonly nearest: WebGLSampler;
   private readonly pages: WebGLTexture[] = [];
   private readonly quads: { vertices: WebGLVertexArrayObject; buffer: WebGLBuffer };
@@ -88,7 +86,6 @@ export class Scene {
     };
     this.table = table();
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, 256, 4, 0, gl.RGBA, gl.UNSIGNED_BYTE, lookUpTable());
-    this.bounds = table();
     this.nearest = gl.createSampler()!;
     gl.samplerParameteri(this.nearest, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
     gl.samplerParameteri(this.nearest, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
@@ -400,11 +397,7 @@ export class Scene {
     if (!style) return at;
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this.table);
-    gl.activeTexture(gl.TEXTURE1);
-    gl.bindTexture(gl.TEXTURE_2D, this.bounds);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.R32F, 256, 1, 0, gl.RED, gl.FLOAT, style.bounds);
     gl.uniform1i(at("table"), 0);
-    gl.uniform1i(at("bounds"), 1);
     gl.uniform1i(at("by"), ["angle", "area", "ratio", "region"].indexOf(style.by));
     gl.uniform2f(at("range"), ...style.range);
     return at;

@@ -8,7 +8,6 @@ uniform int by;
 uniform vec2 range;
 ${own}
 uniform sampler2D table;
-uniform sampler2D bounds;
 vec3 look(float row, float t) {
   return texture(table, vec2((clamp(t, 0.0, 1.0) * 255.0 + 0.5) / 256.0, (row + 0.5) / 4.0)).rgb;
 }
@@ -17,10 +16,7 @@ vec3 colourOf(float angle, float area, float slot) {
   float logarithm = mix(shown.x, shown.y, area);
   if (by == 0) return look(0.0, (angle * 60.0 - range.x) / (range.y - range.x));
   if (by == 1) return look(1.0, (logarithm - range.x) / max(range.y - range.x, 1e-6));
-  if (by == 2) {
-    float bound = texelFetch(bounds, ivec2(int(slot * 255.0 + 0.5), 0), 0).r;
-    return look(2.0, (exp2(logarithm - bound) - range.x) / (range.y - range.x));
-  }
+  if (by == 2) return look(2.0, (exp2(logarithm) - range.x) / (range.y - range.x));
   if (by == 3) return look(3.0, slot);
   return plain;
 }`;
@@ -63,7 +59,7 @@ out vec4 pixel;
 void main() {
   vec4 cell = texture(image, at);
   if (cell.a < 0.004) discard;
-  float slot = by == 2 || by == 3 ? texture(slots, at).b : 0.0;
+  float slot = by == 3 ? texture(slots, at).b : 0.0;
   pixel = vec4(colourOf(cell.r / cell.a, cell.g / cell.a, slot) * cell.a, cell.a);
 }`,
   ],
@@ -92,7 +88,7 @@ out vec4 pixel;
 void main() {
   vec4 cell = texture(image, at);
   if (cell.a < 0.004) discard;
-  float slot = by == 2 || by == 3 ? texture(slots, at).b : 0.0;
+  float slot = by == 3 ? texture(slots, at).b : 0.0;
   pixel = vec4(colourOf(cell.r / cell.a, cell.g / cell.a, slot) * cell.a, cell.a);
 }`,
   ],

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The canvas of a mesh: draws what a run brings, and takes the mouse, the wheel, fingers and keys.
 // Two canvases lie on each other: triangles below, drawn by the renderer, marks above.
-import { boundLogarithms, varies, type Bounds } from "./bounds";
 import { Camera } from "./camera";
 import type { ColourBy } from "./colours";
 import type { MeshRun, RunPainter, RunState } from "./mesh-run";
@@ -18,7 +17,6 @@ export interface ViewSettings {
   quadtree: boolean;
   worst: boolean;
   dark: boolean;
-  bounds: Bounds | undefined;
   sketch: Sketch | undefined;
   backdrop: Backdrop | undefined;
 }
@@ -47,7 +45,7 @@ export class Viewport implements RunPainter {
   private untouched = true; // the camera follows `home`
   private flight: Flight | undefined;
   private asked = false;
-  private over: Bounds | undefined; // that the pictures show areas over; undefined if areas alone
+  private over = false; // whether the pictures show areas over their bounds, or areas alone
   private stillMarks = ""; // what the painted marks depend on; empty if on the place, too
 
   // Undefined if the browser has no WebGL2. `tellLost` is called when the browser takes the graphics
@@ -92,8 +90,7 @@ export class Viewport implements RunPainter {
 
   // Has the pictures show what the settings want, if they do not.
   private wantPictures(): void {
-    const { by, bounds } = this.settings!;
-    const over = by === "ratio" && varies(bounds) ? bounds : undefined;
+    const over = this.settings!.by === "ratio";
     if (over === this.over) return;
     this.over = over;
     this.renderer?.clear();
@@ -148,7 +145,7 @@ export class Viewport implements RunPainter {
   reset(): void {
     this.renderer?.clear();
     this.flashes.clear();
-    this.over = undefined;
+    this.over = false;
     if (this.settings) this.wantPictures();
     if (!this.outlined) this.home = undefined;
     this.ask();
@@ -196,7 +193,6 @@ export class Viewport implements RunPainter {
       by: settings.by,
       edges: settings.edges,
       range: settings.range,
-      bounds: boundLogarithms(settings.bounds, state.regions),
       plain: settings.dark ? [0.15, 0.2, 0.24] : [0.9, 0.93, 0.95],
       ink: settings.by === "none" && settings.dark ? [0.75, 0.82, 0.87] : [0.05, 0.09, 0.12],
       outline: settings.dark ? [0.87, 0.91, 0.94] : [0.05, 0.09, 0.12],

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "files/formats/raster.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
+#include <tuple>
+#include <vector>
 
 #include "tests/files/support/temp_folder.h"
 
 namespace weft::files {
 namespace {
+
+using testing::ElementsAre;
+using testing::IsNan;
 
 constexpr char kGrid[] =
     "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 2\nNODATA_value -9999\n"
@@ -74,6 +81,25 @@ TEST_F(RasterFile, IsRefusedWhereItsHeaderOrItsLengthIsWrong) {
   EXPECT_NE(refusal("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1\n")
                 .find("the file ends where a value"),
             std::string::npos);
+}
+
+TEST_F(RasterFile, IsReadBackAsItWasWritten) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const double dy : {0.1, 3.0}) {
+    const Raster written{-1.5, 1e6 + 0.1, 0.1, dy, 3, 2, {1, kNan, 1.0 / 3, 4e9, kInfinity, 6}};
+    const auto name = folder_.path() / "w.asc";
+    std::vector<OutputFile> files;
+    files.push_back(*OutputFile::create(name, {}));
+    write_raster(written, files.back());
+    ASSERT_TRUE(commit(files));
+    const auto grid = read_raster(name, RasterValues::kAny);
+    ASSERT_TRUE(grid) << grid.error().message;
+    EXPECT_EQ(
+        std::tie(grid->x, grid->y, grid->dx, grid->dy, grid->columns, grid->rows),
+        std::tie(written.x, written.y, written.dx, written.dy, written.columns, written.rows));
+    EXPECT_THAT(grid->values, ElementsAre(1, IsNan(), 1.0 / 3, 4e9, IsNan(), 6));
+  }
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ beside the modules that these share, whose names begin with an underscore.
 """
 
 from . import aio
-from ._in_process import mesh
+from ._in_process import SampledSize, mesh, sample_size
 from ._mesh import Mesh
 from ._patches import stitch
 from ._requests import Layers, MeshOptions
@@ -43,7 +43,7 @@ __all__ = [
     "FieldViolation", "InvalidRequest", "Job", "JobState", "LayerSummary", "Layers", "LimitExceeded", "LocalServer",
     "LocalServerError", "Merging", "Mesh", "MeshFileError", "MeshOptions", "MeshStream",
     "MissingPackage", "NarrowPlace", "NotFound", "OutsideSegments", "Progress", "Quality", "Raster", "Region",
-    "ServerError", "ServerInfo", "ServerLimits", "Simplification", "Size", "SizeWarning", "Summary", "SwitchError",
+    "SampledSize", "ServerError", "ServerInfo", "ServerLimits", "Simplification", "Size", "SizeWarning", "Summary", "SwitchError",
     "TLS", "Timings", "Unauthenticated", "Unavailable", "Unrefined", "WeftError", "WeftWarning", "__version__", "aio",
-    "distance", "local", "mesh", "on_mesh", "raster", "stitch", "triangulate", "width",
+    "distance", "local", "mesh", "on_mesh", "raster", "sample_size", "stitch", "triangulate", "width",
 ]

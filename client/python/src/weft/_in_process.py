@@ -3,16 +3,61 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from typing import Unpack
 
-from . import _library
+import numpy as np
+import numpy.typing as npt
+
+from . import _library, results
 from ._mesh import Mesh
 from ._receiver import warn_of
 from ._requests import MeshOptions, mesh_request, projection
 from .domain import DomainLike, as_domain
 from .results import Progress
 from .size import Size
+
+
+@dataclasses.dataclass(frozen=True)
+class SampledSize:
+    """What a request asks for, without a mesh."""
+
+    bounds: npt.NDArray[np.float64]
+    """(n,): what the area of a triangle may be at most with its centroid at each point, in squared units
+    of the domain: the least of the size, with its gradation, and the region's bound. Infinity for no bound,
+    NaN outside of the domain."""
+    expected_triangles: int
+    """Of a mesh, about."""
+
+    @property
+    def edges(self) -> npt.NDArray[np.float64]:
+        """(n,): the length of edges of equilateral triangles that are so large."""
+        return np.sqrt(self.bounds * (4 / np.sqrt(3)))
+
+
+def sample_size(domain: DomainLike, points: npt.ArrayLike, size: Size = None, min_angle: float = 20,
+                **options: Unpack[MeshOptions]) -> SampledSize:
+    """What a size asks for at `points`, (n, 2) with n up to 262,144, and about how many triangles a mesh
+    has: without the mesh.
+
+    The other arguments, the warnings and the exceptions are those of `mesh`; of a domain in longitude and
+    latitude, `points` are, too.
+
+        x, y = np.meshgrid(np.linspace(0, 10, 200), np.linspace(0, 7, 140))
+        plt.pcolormesh(x, y, weft.sample_size("pipe.poly", np.c_[x.ravel(), y.ravel()], edge="0.1 + 0.2*y")
+                       .edges.reshape(x.shape))
+    """
+    given = as_domain(domain)
+    projected = projection(given, options)
+    request = mesh_request(given, size, min_angle, options, projected)
+    at = np.ascontiguousarray(points, np.float64)
+    if at.ndim != 2 or at.shape[1] != 2 or len(at) == 0:
+        raise ValueError(f"points is of shape {at.shape}; it must be (n, 2), with a point at least")
+    request.sample_points.extend((at if projected is None else projected.to_plane(at)).ravel().tolist())
+    summary = _library.summarize(request)
+    warn_of(results.summary(summary), sampled=callable(size) or callable(options.get("edge")))
+    return SampledSize(np.array(summary.sampled_bounds), summary.expected_triangles)
 
 
 def mesh(domain: DomainLike, size: Size = None, min_angle: float = 20, *,

@@ -121,6 +121,16 @@ class _Watch:
 
 def make(message: Any, on_progress: Callable[[results.Progress], object] | None) -> Made:
     """The mesh of a weft.v1.GenerateMeshRequest; raises as a Client does."""
+    return _run(message, on_progress, _made)
+
+
+def summarize(message: Any) -> Any:
+    """The weft.v1.Summary of the mesh, as a message."""
+    return _run(message, None, _summary)
+
+
+def _run(message: Any, on_progress: Callable[[results.Progress], object] | None,
+         take: Callable[[Any, Any], Any]) -> Any:
     library = _library()
     request = message.SerializeToString()
     watch = _Watch(on_progress)
@@ -137,7 +147,7 @@ def make(message: Any, on_progress: Callable[[results.Progress], object] | None)
     try:
         if watch.raised is not None:  # by the last call, when the mesh was made already
             raise watch.raised
-        return _made(library, mesh)
+        return take(library, mesh)
     finally:
         library.weft_mesh_free(mesh)
 
@@ -150,11 +160,14 @@ def _copied(at: int | None, shape: tuple[int, ...], kind: Any) -> Any:
     return np.ctypeslib.as_array(ctypes.cast(at, POINTER(scalar)), shape).copy()
 
 
+def _summary(library: Any, mesh: Any) -> Any:
+    return _protocol.message("weft.v1.Summary").FromString(_bytes_of(library.weft_mesh_summary, mesh))
+
+
 def _made(library: Any, mesh: Any) -> Made:
     arrays = Arrays(struct_size=ctypes.sizeof(Arrays))
     library.weft_mesh_arrays(mesh, ctypes.byref(arrays))
     edges = _copied(arrays.edges, (arrays.edge_count, 4), np.int32)
-    summary = _protocol.message("weft.v1.Summary").FromString(_bytes_of(library.weft_mesh_summary, mesh))
     return Made(
         points=_copied(arrays.vertices, (arrays.vertex_count, 2), np.float64),
         triangles=_copied(arrays.triangles, (arrays.triangle_count, 3), np.int32),
@@ -162,7 +175,7 @@ def _made(library: Any, mesh: Any) -> Made:
         edges=edges[:, :2].copy(), edge_segments=edges[:, 2].copy(), edge_markers=edges[:, 3].copy(),
         edge_bulges=_copied(arrays.bulges, (arrays.edge_count if arrays.bulges else 0,), np.float64),
         input_points=_copied(arrays.input_points, (arrays.input_point_count, 2), np.int32),
-        summary=results.summary(summary))
+        summary=results.summary(_summary(library, mesh)))
 
 
 @dataclasses.dataclass(frozen=True)

@@ -95,6 +95,10 @@ class Projection:
             outside=summary.outside and moved(summary.outside, "x", "y"),
             layers=summary.layers and moved(summary.layers, "x", "y"))
 
+    def to_plane(self, lonlat: Floats) -> Floats:
+        """Raises DomainError for a point that has no place in the plane."""
+        return self._finite("points", lonlat)
+
     def field(self, field: Field) -> Field:
         """The field in the plane: its points are in longitude and latitude, those of an earlier
         mesh in what this one will be; a raster without a system of its own, too."""
