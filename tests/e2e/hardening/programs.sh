@@ -3,8 +3,8 @@
 # Reads programs and static libraries, and fails if one of them lacks a protection:
 #   - a program is position independent, its relocations are bound and read-only before it runs, and
 #     its stack is not executable;
-#   - every function of a library that may be jumped to begins with endbr64, and unless it is the
-#     engine, whose loops they slow down, it has canaries on its stacks;
+#   - every function of a library that may be jumped to begins with endbr64, or bti on arm64, and unless it
+#     is the engine, whose loops they slow down, it has canaries on its stacks;
 #   - the libraries have checked copies, wherever they call functions of C that copy.
 #
 #   tests/e2e/hardening/programs.sh FILE...
@@ -27,8 +27,8 @@ for file in "$@"; do
   if [[ $file == *.a ]]; then
     symbols=$(nm "$file" 2>/dev/null)
     objects=$(readelf -h "$file" 2>/dev/null | grep -c '^ELF Header')
-    marked=$(readelf -n "$file" 2>/dev/null | grep -cE 'x86 feature: IBT, SHSTK' || true)
-    want "$file" "only $marked of its $objects objects are marked for CET" [ "$marked" = "$objects" ]
+    marked=$(readelf -n "$file" 2>/dev/null | grep -cE 'x86 feature: IBT, SHSTK|AArch64 feature: BTI, PAC' || true)
+    want "$file" "only $marked of its $objects objects are marked for CET, or BTI and PAC" [ "$marked" = "$objects" ]
     copies+=$symbols$'\n'
     [[ $file == *libweft_engine.a ]] && continue
     want "$file" "no stack has a canary" has ' U __stack_chk_fail$' "$symbols"

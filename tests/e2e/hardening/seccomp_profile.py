@@ -15,6 +15,7 @@ import seccomp
 
 CANNOT_LOAD = 125
 
+ARCHITECTURES = {"SCMP_ARCH_X86_64": seccomp.Arch.X86_64, "SCMP_ARCH_AARCH64": seccomp.Arch.AARCH64}
 COMPARISONS = {"SCMP_CMP_EQ": seccomp.EQ, "SCMP_CMP_MASKED_EQ": seccomp.MASKED_EQ}
 
 
@@ -31,10 +32,11 @@ def load(path: str) -> None:
     """Puts this process, and what it starts, under the profile. Raises RuntimeError or OSError."""
     with open(path) as file:
         profile = json.load(file)
-    if profile["architectures"] != ["SCMP_ARCH_X86_64"]:
-        raise ValueError(f"{path}: only x86-64 is known here")
     filter_ = seccomp.SyscallFilter(
         action_of(profile["defaultAction"], profile["defaultErrnoRet"]))
+    for name in profile["architectures"]:
+        if not filter_.exist_arch(ARCHITECTURES[name]):
+            filter_.add_arch(ARCHITECTURES[name])
     for rule in profile["syscalls"]:
         action = action_of(rule["action"], rule.get("errnoRet", profile["defaultErrnoRet"]))
         conditions = [condition_of(argument) for argument in rule.get("args", [])]

@@ -16,6 +16,7 @@ import urllib.request
 from collections.abc import Iterator
 
 import pytest
+import seccomp
 import seccomp_profile
 
 SOURCE = pathlib.Path(__file__).parents[3]
@@ -182,6 +183,11 @@ def test_sigterm_drains(server: Server) -> None:
     assert server.end() == 0
 
 
+def number(call: str) -> int:
+    """Of a call of the system, on this processor."""
+    return seccomp.resolve_syscall(seccomp.Arch.NATIVE, call)
+
+
 # What an attacker in weftd would want. None of it needs a right, so a kernel without the filter grants
 # it, or refuses it with another error than EPERM.
 FORBIDDEN = {
@@ -189,15 +195,15 @@ FORBIDDEN = {
     "unshare": "libc.unshare(0)",
     "ptrace": "libc.ptrace(0, 0, 0, 0)",  # PTRACE_TRACEME
     "process_vm_readv": "libc.process_vm_readv(libc.getpid(), None, 0, None, 0, 0)",
-    "keyctl": "libc.syscall(250, 0, -3, 0)",
-    "io_uring_setup": "libc.syscall(425, 0, None)",
-    "userfaultfd": "libc.syscall(323, 1)",  # UFFD_USER_MODE_ONLY
+    "keyctl": f"libc.syscall({number('keyctl')}, 0, -3, 0)",
+    "io_uring_setup": f"libc.syscall({number('io_uring_setup')}, 0, None)",
+    "userfaultfd": f"libc.syscall({number('userfaultfd')}, 1)",  # UFFD_USER_MODE_ONLY
     "memfd_create": "libc.memfd_create(b'x', 0)",
     "socket of AF_ALG": "libc.socket(38, 5, 0)",
     "socket of AF_VSOCK": "libc.socket(40, 1, 0)",
     "netlink of NETLINK_KOBJECT_UEVENT": "libc.socket(16, 3, 15)",
     "ioctl TIOCSTI": "libc.ioctl(0, 0x5412, b'x')",
-    "memory to write and execute": "libc.syscall(9, None, 4096, 7, 34, -1, 0)",
+    "memory to write and execute": f"libc.syscall({number('mmap')}, None, 4096, 7, 34, -1, 0)",
     "memory made executable": "libc.mprotect(page, 4096, 5)",
 }
 
@@ -227,7 +233,7 @@ sys.path.append({os.path.dirname(__file__)!r})
 import seccomp_profile
 libc = ctypes.CDLL(None, use_errno=True)
 seccomp_profile.load({str(PROFILE)!r})
-libc.syscall(435, None, 0)
+libc.syscall({number('clone3')}, None, 0)
 thread = threading.Thread(target=lambda: print(ctypes.get_errno()))
 print(ctypes.get_errno(), flush=True)
 thread.start()
