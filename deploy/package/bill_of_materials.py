@@ -6,7 +6,7 @@
 
 BUILD is a folder in which weft and weftd were built. The bill lists, with what depends on it,
     Debian's packages of the libraries that the programs load, and of the headers and archives that
-        were compiled into them, by dpkg's database of this machine;
+        were compiled into them, by dpkg's database of this machine, or of the sysroot if BUILD is for arm64;
     the packages that weft for Python requires;
     npm's packages of each lockfile in the tree; tools and examples, which nothing that is released
         contains, have the scope `excluded`.
@@ -25,7 +25,6 @@ import urllib.parse
 import uuid
 
 import components
-import program_help
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 UNRELEASED = ("client/examples/",)  # folders whose packages are in nothing that is released
@@ -100,7 +99,8 @@ def linked(build, kind, name, file, version):
 
 
 def bill(build):
-    version = program_help.version_of(build / "weftd")
+    cache = (build / "CMakeCache.txt").read_text()
+    version = re.search(r"^CMAKE_PROJECT_VERSION:\w+=(.+)", cache, re.M)[1]
     all_components, dependencies = {}, {}
 
     def add(owner, parts):

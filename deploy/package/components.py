@@ -61,7 +61,8 @@ def loaded_by(program):
 
 
 def compiled_into(build, program):
-    """The headers and archives outside of the tree that ninja made `program` of, in `build`."""
+    """The headers and archives outside of the tree that ninja made `program` of, in `build`. If that is of a
+    sysroot, the compiler's own headers are still this machine's."""
     inputs = output_of("ninja", "-C", build, "-t", "inputs", program).splitlines()
     objects = [path for path in inputs if path.endswith(".o")]
     headers = re.findall("^    (.*)", output_of("ninja", "-C", build, "-t", "deps", *objects), re.M)
@@ -69,7 +70,7 @@ def compiled_into(build, program):
         raise FileNotFoundError(f"{build}: ninja does not know what {program} was compiled from")
     archives = [path for path in inputs if path.endswith(".a")]
     paths = {(build / path).resolve() for path in headers + archives}
-    return {path for path in paths if path.is_relative_to(root_of(build) / "usr")}
+    return {path for path in paths if path.is_relative_to(root_of(build) / "usr") or path.is_relative_to("/usr")}
 
 
 @dataclasses.dataclass(frozen=True, order=True)
@@ -99,7 +100,11 @@ _FIELDS = ("Package", "Version", "Architecture", "source:Package", "source:Versi
 
 
 def packages_of(files, root=pathlib.Path("/")):
-    """The packages that installed the files; raises LookupError if one came from no package."""
+    """The packages that installed the files, in `root` or, if they are not there, on this machine; raises
+    LookupError if one came from no package."""
+    elsewhere = {file for file in files if not pathlib.Path(file).is_relative_to(root)}
+    if elsewhere:
+        return packages_of(set(files) - elsewhere, root) | packages_of(elsewhere)
     # Packages name the folder that /lib is a link to, or the link.
     spellings = {}
     for file in files:

@@ -127,6 +127,19 @@ def test_a_file_of_no_package_has_no_place_in_the_bill(tmp_path):
         components.packages_of([tmp_path / "strange.so"])
 
 
+def test_what_is_not_of_the_sysroot_is_of_this_machine(tmp_path):
+    """As the compiler's headers are, which are in what is made for arm64."""
+    library, database = tmp_path / "usr/lib/libx.so", tmp_path / "var/lib/dpkg"
+    for folder in (library.parent, database / "info"):
+        folder.mkdir(parents=True)
+    library.touch()
+    (database / "info/libx.list").write_text("/usr/lib/libx.so\n")
+    (database / "status").write_text("Package: libx\nStatus: install ok installed\nVersion: 1\nArchitecture: arm64\n"
+                                     "Maintainer: nobody\nDescription: x\n\n")
+    found = components.packages_of({library, pathlib.Path("/usr/include/stdio.h")}, tmp_path)
+    assert {package.name: package.root for package in found} == {"libx": tmp_path, "libc6-dev": pathlib.Path("/")}
+
+
 @pytest.fixture
 def carried(tmp_path):
     """weftd as a wheel carries it."""
