@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Makes the packages for Debian and the wheel of arm64, and tries them under qemu:
 #   - every program and library in them is for arm64, and the wheel has what they load;
-#   - weft and weftd of both give the bytes that those of this machine give.
+#   - weft and weftd of both give the bytes that those of this machine give;
+#   - weftd makes no system call that its seccomp profile refuses on arm64.
 #
 #   tests/arm64.sh BUILD ARM64 PORTABLE     builds of the presets release, release-arm64, portable-arm64
 set -euo pipefail
@@ -10,12 +11,14 @@ build=$(realpath "$1") arm64=$(realpath "$2") portable=$(realpath "$3")
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 sysroot=$(sed -n 's/^WEFT_SYSROOT:[A-Z]*=//p' "$arm64/CMakeCache.txt" | xargs realpath)
 scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
+trap 'rm -rf --one-file-system "$scratch"' EXIT
+say() { printf '==> %s (at %d s)\n' "$*" $SECONDS; }
 fail() {
   printf 'arm64.sh: %s\n' "$*" >&2
   exit 1
 }
 
+say "packages and wheel"
 deploy/arm64/packages.sh "$arm64" "$scratch/packages" >"$scratch/cpack.log" 2>&1 ||
   fail "cpack failed: $(tail "$scratch/cpack.log")"
 for deb in "$scratch"/packages/*_arm64.deb; do
@@ -23,24 +26,54 @@ for deb in "$scratch"/packages/*_arm64.deb; do
 done
 /usr/bin/python3 -B deploy/package/wheels.py "$portable" "$scratch/wheels"
 /usr/bin/python3 -B -m wheel unpack "$scratch"/wheels/*_aarch64.whl -d "$scratch" >/dev/null
-carried=$(echo "$scratch"/weftmesh-*/weft/carried)
+wheel=$(echo "$scratch"/weftmesh-*)
+carried=$wheel/weft/carried
 chmod +x "$carried"/bin/*
+(cd "$scratch" && du --apparent-size --block-size=1000 packages/*_arm64.deb wheels/*_aarch64.whl)
 
 others=$(find "$scratch/installed" "$carried" -type f -exec file {} + | grep ELF | grep -v 'ARM aarch64' || true)
 [[ -z $others ]] || fail "not for arm64: $others"
+[[ $(find "$wheel" -path '*licenses*/libclang-common*/copyright') ]] ||
+  fail "the wheel lacks the licence of the compiler's headers"
 
+say "meshes, as this machine's"
 run=(qemu-aarch64-static -L "$sysroot")
 mesh() { # mesh NAME WEFT...
   local name=$1
   shift
-  "$@" mesh tests/models/us-east-coast.poly --size '1e-3*(1.5+sin(x)*cos(y))' -o "$scratch/$name.vtu" \
+  "$@" mesh tests/models/us-east-coast.poly --size '1e-3*(1.5+sin(x)*cos(y))' -o "$scratch/$name.vtu" --json \
     >"$scratch/$name.log" 2>&1 || fail "$name makes no mesh: $(cat "$scratch/$name.log")"
+}
+server() { # server BIN [OPTION-OF-QEMU...]: makes a program of BIN/weftd, for WEFT_WEFTD
+  printf '#!/bin/sh\nexec %s %s/weftd "$@"\n' "${run[*]} ${*:2}" "$1" >"$scratch/weftd"
+  chmod +x "$scratch/weftd"
 }
 WEFT_WEFTD=$build/weftd mesh here "$build/weft"
 for bin in "$scratch/installed/usr/bin" "$carried/bin"; do
-  printf '#!/bin/sh\nexec %s %s/weftd "$@"\n' "${run[*]}" "$bin" >"$scratch/weftd"
-  chmod +x "$scratch/weftd"
+  server "$bin"
   WEFT_WEFTD=$scratch/weftd mesh arm64 "${run[@]}" "$bin/weft"
   cmp "$scratch/here.vtu" "$scratch/arm64.vtu" || fail "$bin gives another mesh"
 done
+
+say "system calls, as the profile has them"
+server "$scratch/installed/usr/bin" -strace -D "$scratch/calls"
+"$scratch/weftd" --listen "127.0.0.1:0,unix:$scratch/socket" --metrics 127.0.0.1:0 --http 127.0.0.1:0 \
+  --data "$scratch/data" --port-file "$scratch/address" 2>"$scratch/server.log" &
+server=$!
+until [[ -s $scratch/address ]]; do
+  kill -0 $server 2>/dev/null || fail "weftd does not start: $(tail "$scratch/server.log")"
+  sleep 0.1
+done
+"$build/weft" submit tests/models/pipe.poly --size 4 --wait --quiet --server "unix:$scratch/socket" >/dev/null
+"$build/weft" mesh tests/models/pipe.poly --size 4 -o "$scratch/pipe.vtu" --quiet --server "$(head -n 1 "$scratch/address")"
+kill -TERM $server
+wait $server || fail "weftd ended with $?: $(tail "$scratch/server.log")"
+/usr/bin/python3 - deploy/seccomp/weftd.json "$scratch/calls" <<'END' || fail "the profile refuses what weftd does"
+import json, re, sys
+profile = json.load(open(sys.argv[1]))
+allowed = {name for rule in profile["syscalls"] for name in rule["names"]}
+made = set(re.findall(r"^\d+ (\w+)\(", open(sys.argv[2], errors="replace").read(), re.M))
+print(f"{len(made)} system calls are made, {len(made - allowed)} of them refused: {sorted(made - allowed)}")
+sys.exit("SCMP_ARCH_AARCH64" not in profile["architectures"] or len(made) < 30 or bool(made - allowed))
+END
 echo "packages and wheel of arm64 give the meshes of this machine"
