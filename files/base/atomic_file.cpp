@@ -237,6 +237,10 @@ std::uint64_t OutputFile::size() const {
   return ::fstat(fd_.get(), &status) == 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
 }
 
+FileDescriptor OutputFile::share() const {
+  return FileDescriptor(::fcntl(fd_.get(), F_DUPFD_CLOEXEC, 0));
+}
+
 Result<void> OutputFile::copy_out() const {
   if (::lseek(fd_.get(), 0, SEEK_SET) != 0) return unwritable(target_, std::strerror(errno));
   if (const int problem = copy_stream(fd_.get(), STDOUT_FILENO, stop_))

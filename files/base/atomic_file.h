@@ -98,10 +98,14 @@ class OutputFile {
   void fail(int problem) { failure_ = failure_ == 0 ? problem : failure_; }
 
   // Flushes; returns the first failure of any write, if there was one. A requested stop counts.
+  // More may be written after that.
   Result<void> finish();
   const std::filesystem::path& target() const { return target_; }
   // In bytes. REQUIRES: finished.
   std::uint64_t size() const;
+  // Another descriptor of the file, for reading what was flushed while more is written; not open if
+  // there are too many.
+  FileDescriptor share() const;
   // The file itself, without a name: it vanishes with the descriptor. REQUIRES: finished; nothing
   // else is called any more.
   FileDescriptor take() { return std::move(fd_); }

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
@@ -26,6 +27,7 @@ struct Answer {
   files::FileDescriptor file{};
   std::uint64_t file_bytes = 0;  // that are sent of it
   std::uint64_t file_first = 0;  // the first of these
+  bool grows = false;            // more will be there to be sent: `grow` and `end` follow
 };
 
 class Exchange {
@@ -34,6 +36,11 @@ class Exchange {
    public:
     // At most once.
     virtual void answer(Answer answer) = 0;
+    // So many bytes more are in the file of the answer.
+    virtual void grow(std::uint64_t bytes) = 0;
+    // The file is whole. nullopt: it never will be; the connection breaks off, so that nobody takes
+    // it for whole.
+    virtual void end(const std::optional<boost::beast::http::fields>& trailers) = 0;
 
    protected:
     ~Client() = default;

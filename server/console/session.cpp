@@ -25,6 +25,7 @@
 #include "server/console/call_answer.h"
 #include "server/console/call_body.h"
 #include "server/console/call_headers.h"
+#include "server/console/file_answer.h"
 #include "server/console/pages.h"
 #include "server/console/problem.h"
 #include "server/console/transport.h"
@@ -64,7 +65,7 @@ class HttpSession final : public Session,
   void close() override;
   void finish() override;
   bool idle() const override { return state_ == State::kIdle || state_ == State::kHeader; }
-  bool exchanging() const override { return exchange_ != nullptr || file_.is_open(); }
+  bool exchanging() const override { return exchange_ != nullptr || file_; }
 
  private:
   enum class State { kIdle, kHeader, kAnswering, kLingering, kClosed };
@@ -93,6 +94,8 @@ class HttpSession final : public Session,
   // One exchange.
   void begin_exchange();
   void answer(Answer answer) override;
+  void grow(std::uint64_t bytes) override;
+  void end(const std::optional<http::fields>& trailers) override;
   void write_file();
 
   // One call.
@@ -129,10 +132,7 @@ class HttpSession final : public Session,
   bool keep_ = true;  // the connection, after this response
 
   std::shared_ptr<Exchange> exchange_;
-  std::string response_head_;     // of a file
-  files::FileDescriptor file_;    // that is being written
-  std::uint64_t file_bytes_ = 0;  // left of it
-  off_t file_at_ = 0;
+  std::optional<FileAnswer> file_;  // that is being written
 
   std::shared_ptr<BridgeCall> call_;
   std::optional<CallBody> body_;
@@ -387,35 +387,40 @@ void HttpSession::begin_exchange() {
 
 void HttpSession::answer(Answer answer) {
   if (state_ != State::kAnswering || !exchange_) return;
-  exchange_.reset();
+  if (!answer.grows) exchange_.reset();
   body_wanted_ = false;
   if (!answer.file.is_open()) return respond(std::move(answer.head));
   if (!parser_->is_done()) keep_ = false;
   secure(answer.head);
   allow_origin(door_.rules, origin_, parser_->get(), answer.head);
   answer.head.keep_alive(keep_);
-  answer.head.content_length(answer.file_bytes);
-  file_ = std::move(answer.file);
-  file_bytes_ = answer.file_bytes;
-  file_at_ = static_cast<off_t>(answer.file_first);
-  window_.resize(kWindow);
-  std::ostringstream text;
-  text << answer.head.base();
-  response_head_ = text.str();
-  write_out({asio::buffer(response_head_)});
+  file_.emplace(std::move(answer));
+  write_file();
+}
+
+void HttpSession::grow(std::uint64_t bytes) {
+  if (!file_) return;
+  file_->grow(bytes);
+  if (!writing_) write_file();
+}
+
+void HttpSession::end(const std::optional<http::fields>& trailers) {
+  if (!file_) return;
+  exchange_.reset();
+  if (!trailers) return close();
+  file_->end(*trailers);
+  if (!writing_) write_file();
 }
 
 void HttpSession::write_file() {
-  if (file_bytes_ == 0) {
+  if (file_->over()) {
     file_.reset();
     return response_written();
   }
-  const ssize_t size =
-      ::pread(file_.get(), window_.data(), std::min<std::uint64_t>(kWindow, file_bytes_), file_at_);
-  if (size <= 0) return close();  // the disk's fault; the client sees that bytes are missing
-  file_at_ += size;
-  file_bytes_ -= static_cast<std::uint64_t>(size);
-  write_out({asio::buffer(window_.data(), static_cast<std::size_t>(size))});
+  if (!file_->has_next()) return;  // `grow` and `end` go on
+  auto next = file_->next();
+  if (!next) return close();  // the disk's fault; the client sees that bytes are missing
+  write_out(std::move(*next));
 }
 
 // ---- one call ----
@@ -583,7 +588,7 @@ void HttpSession::write_out(std::vector<asio::const_buffer> buffers) {
         if (self->state_ == State::kClosed) return;
         if (error) return self->close();
         self->timer_.cancel();
-        if (self->file_.is_open()) return self->write_file();
+        if (self->file_) return self->write_file();
         if (!self->answer_->over()) return self->write_next();
         self->response_written();
       });

@@ -74,6 +74,10 @@ Outcome<MeshWish> read_wish(const Query& query, ParameterUses uses, MeshExchange
     const files::DataPath mesh = std::filesystem::path("mesh" + wish->to);
     if (const auto writable = files::check_writable(mesh, wish->writing); !writable)
       return refuse(writable.error().message, "order");
+    if (wish->stream && wish->to != kStreamed)
+      return refuse(
+          "no file of this format can be sent while the mesh is made: give format=geojson",
+          "stream");
   }
   if ((purpose == Purpose::kJob || purpose == Purpose::kDomain) && wish->projection.wanted() &&
       !wish->projection.to_metres)
@@ -97,8 +101,15 @@ grpc::ByteBuffer buffer_of(std::string bytes) {
 
 struct Begun {
   SentDomain sent;
-  std::shared_ptr<files::MeshSpool> spool;
+  std::shared_ptr<ArrivingMesh> mesh;
 };
+
+Outcome<Begun> begun(SentDomain sent, bool stream, const std::filesystem::path& folder,
+                     std::stop_token stop) {
+  auto mesh = ArrivingMesh::make(folder, stream ? &sent.domain.names : nullptr, std::move(stop));
+  if (!mesh) return tl::unexpected(mesh.error());
+  return Begun{std::move(sent), std::move(*mesh)};
+}
 
 }  // namespace
 
@@ -163,7 +174,7 @@ void MeshExchange::work(bool is_long, Task task, Then then) {
 }
 
 bool MeshExchange::is_large() const {
-  return spool_->triangles() > kShortMesh;
+  return mesh_->triangles() > kShortMesh;
 }
 
 // ---- the file ----
@@ -250,15 +261,14 @@ void MeshExchange::body_ended() {
       memory != nullptr,
       [file = std::move(file_), wish = wish_, folder = parts_.folder, stop = stop_.get_token(),
        is_mesh = purpose_ == Purpose::kMesh, memory]() mutable -> Outcome<Begun> {
+        const bool stream = wish.stream;
         auto sent = read_domain_file(std::move(file), std::move(wish), folder);
         if (!sent) return tl::unexpected(sent.error());
         if (!is_mesh) return Begun{std::move(*sent), nullptr};
-        auto spool = make_spool(folder, stop);
-        if (!spool) return tl::unexpected(spool.error());
-        return Begun{std::move(*sent), std::move(*spool)};
+        return begun(std::move(*sent), stream, folder, stop);
       },
       [](MeshExchange& self, Begun begun) {
-        self.begin(std::move(begun.sent), std::move(begun.spool));
+        self.begin(std::move(begun.sent), std::move(begun.mesh));
       });
 }
 
@@ -267,14 +277,13 @@ void MeshExchange::take_request_in() {
       false,
       [bytes = std::move(file_.bytes), wish = wish_, folder = parts_.folder,
        stop = stop_.get_token()]() mutable -> Outcome<Begun> {
+        const bool stream = wish.stream;
         auto sent = take_request(std::move(bytes), std::move(wish));
         if (!sent) return tl::unexpected(sent.error());
-        auto spool = make_spool(folder, stop);
-        if (!spool) return tl::unexpected(spool.error());
-        return Begun{std::move(*sent), std::move(*spool)};
+        return begun(std::move(*sent), stream, folder, stop);
       },
       [](MeshExchange& self, Begun begun) {
-        self.begin(std::move(begun.sent), std::move(begun.spool));
+        self.begin(std::move(begun.sent), std::move(begun.mesh));
       });
 }
 
@@ -308,12 +317,12 @@ void MeshExchange::convert(std::shared_ptr<void> memory) {
 
 // ---- the call ----
 
-void MeshExchange::begin(SentDomain sent, std::shared_ptr<files::MeshSpool> spool) {
+void MeshExchange::begin(SentDomain sent, std::shared_ptr<ArrivingMesh> mesh) {
   if (sent.request.size() > parts_.context.most_request_bytes) return refuse(too_large());
   if (!held_.hold(sent.request.size() + sent.bytes)) return refuse(out_of_memory());
   std::string request = std::move(sent.request);
   sent_ = std::make_shared<const SentDomain>(std::move(sent));
-  spool_ = std::move(spool);
+  mesh_ = std::move(mesh);
   if (purpose_ == Purpose::kJob) return begin_job(std::move(request));
   begin_stream("/weft.v1.MeshService/GenerateMesh", std::move(request));
 }
@@ -344,11 +353,13 @@ void MeshExchange::begin_job(std::string mesh) {
 void MeshExchange::begin_fetch() {
   work(
       false,
-      [folder = parts_.folder, stop = stop_.get_token()] { return make_spool(folder, stop); },
-      [](MeshExchange& self, std::shared_ptr<files::MeshSpool> spool) {
+      [folder = parts_.folder, stop = stop_.get_token()] {
+        return ArrivingMesh::make(folder, nullptr, stop);
+      },
+      [](MeshExchange& self, std::shared_ptr<ArrivingMesh> mesh) {
         v1::FetchMeshRequest request;
         request.set_id(self.job_);
-        self.spool_ = std::move(spool);
+        self.mesh_ = std::move(mesh);
         self.sent_ = std::make_shared<const SentDomain>();
         self.begin_stream("/weft.v1.JobService/FetchMesh", request.SerializeAsString());
       });
@@ -376,9 +387,12 @@ void MeshExchange::wrote(bool) {
 void MeshExchange::received(grpc::ByteBuffer message) {
   work(
       is_large(),
-      [spool = spool_, message = std::move(message)] { return take_message(message, *spool); },
+      [mesh = mesh_, sent = sent_, message = std::move(message)] {
+        return mesh->take(message, *sent);
+      },
       [](MeshExchange& self, std::optional<v1::Summary> summary) {
         if (summary) self.summary_ = std::move(summary);
+        if (self.mesh_->streams()) self.send_on(self.mesh_->so_far());
         if (self.call_ != nullptr) self.call_->read();
       });
 }
@@ -404,9 +418,7 @@ void MeshExchange::ended(const grpc::Status& status, const Metadata&) {
 
 void MeshExchange::write_file() {
   work(
-      is_large(),
-      [spool = std::move(spool_), sent = sent_, to = wish_.to, folder = parts_.folder,
-       stop = stop_.get_token()] { return write_mesh_file(*spool, *sent, to, folder, stop); },
+      is_large(), [mesh = mesh_, sent = sent_, to = wish_.to] { return mesh->write(*sent, to); },
       [](MeshExchange& self, MeshFile file) { self.answer_mesh(std::move(file)); });
 }
 
@@ -433,20 +445,42 @@ void MeshExchange::cut(Answer& answer) const {
   }
 }
 
-void MeshExchange::answer_mesh(MeshFile file) {
-  Answer answer{.head = make_page(http::status::ok, media_type(wish_.to), ""),
-                .file = std::move(file.file),
-                .file_bytes = file.bytes};
-  Response& head = answer.head;
+Response MeshExchange::head() const {
+  Response head = make_page(http::status::ok, media_type(wish_.to), "");
   head.set(http::field::content_disposition,
            fmt::format("attachment; filename=\"{}{}\"", stem_, wish_.to));
+  head.set(http::field::cache_control, "no-store");
+  return head;
+}
+
+void MeshExchange::send_on(MeshFile so_far) {
+  const std::uint64_t more = so_far.bytes - std::exchange(sent_bytes_, so_far.bytes);
+  if (more == 0) return;
+  if (more < so_far.bytes) return answers_to_->grow(more);
+  Answer answer{.head = head(), .file = std::move(so_far.file), .file_bytes = more, .grows = true};
+  answer.head.set(http::field::trailer, "Weft-Vertices, Weft-Triangles, Weft-Sha256, Weft-Warning");
+  answers_to_->answer(std::move(answer));
+}
+
+void MeshExchange::describe(std::vector<std::string> warnings, http::fields& head) const {
   head.set("Weft-Vertices", std::to_string(summary_->vertices()));
   head.set("Weft-Triangles", std::to_string(summary_->triangles()));
   head.set("Weft-Sha256", hexadecimal(summary_->sha256()));
-  std::vector<std::string> warnings = sent_->warnings;
-  warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
+  warnings.insert(warnings.begin(), sent_->warnings.begin(), sent_->warnings.end());
   add_warnings(*summary_, *sent_, wish_.request.budget().max_triangles(), warnings);
   warn(std::move(warnings), head);
+}
+
+void MeshExchange::answer_mesh(MeshFile file) {
+  if (mesh_->streams()) {
+    send_on(std::move(file));
+    http::fields trailers;
+    describe({}, trailers);
+    std::exchange(answers_to_, nullptr)->end(trailers);
+    return;
+  }
+  Answer answer{.head = head(), .file = std::move(file.file), .file_bytes = file.bytes};
+  describe(std::move(file.warnings), answer.head);
   if (purpose_ == Purpose::kStored) cut(answer);
   this->answer(std::move(answer));
 }
@@ -462,8 +496,9 @@ void MeshExchange::refuse(const Problem& problem) {
   stop_.request_stop();
   if (sent_ == nullptr) parts_.refusals.note(client_, problem);
   if (const auto call = std::exchange(call_, nullptr)) call->drop();
-  if (const auto client = std::exchange(answers_to_, nullptr))
-    client->answer({.head = problem_page(problem)});
+  const auto client = std::exchange(answers_to_, nullptr);
+  if (client == nullptr) return;
+  sent_bytes_ > 0 ? client->end(std::nullopt) : client->answer({.head = problem_page(problem)});
 }
 
 void MeshExchange::drop() {

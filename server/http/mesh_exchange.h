@@ -4,8 +4,8 @@
 //
 // The body is read into memory, bounded as a message of gRPC is, and becomes the request of a call
 // within the process, which is admitted as every other. The chunks of a mesh go to nameless files,
-// and from there, once all are there, into the file that is sent. What takes long is done by the
-// workers.
+// and from there, once all are there, into the file that is sent; one that streams is written, and
+// sent, as they come. What takes long is done by the workers.
 #pragma once
 
 #include <chrono>
@@ -63,7 +63,7 @@ class MeshExchange final : public Exchange,
   void lint(std::shared_ptr<void> memory);
   void convert(std::shared_ptr<void> memory);
   void answer(Answer answer);
-  void begin(SentDomain sent, std::shared_ptr<files::MeshSpool> spool);
+  void begin(SentDomain sent, std::shared_ptr<ArrivingMesh> mesh);
   void begin_job(std::string mesh);
   void begin_fetch();
   void begin_stream(const char* method, std::string request);
@@ -71,7 +71,13 @@ class MeshExchange final : public Exchange,
   void received(grpc::ByteBuffer message) override;
   void ended(const grpc::Status& status, const Metadata& trailers) override;
   void write_file();
+  // Of the mesh's file, with what is known before it is made.
+  Response head() const;
+  // Sends what there is of a file that streams.
+  void send_on(MeshFile so_far);
   void answer_mesh(MeshFile file);
+  // The figures and the warnings of the mesh.
+  void describe(std::vector<std::string> warnings, boost::beast::http::fields& head) const;
   // Names the file of a stored mesh, and leaves of it the range that was asked for.
   void cut(Answer& answer) const;
   // Ends the call, if there is one.
@@ -98,7 +104,8 @@ class MeshExchange final : public Exchange,
   std::stop_source stop_;
 
   std::shared_ptr<const SentDomain> sent_;
-  std::shared_ptr<files::MeshSpool> spool_;
+  std::shared_ptr<ArrivingMesh> mesh_;
+  std::uint64_t sent_bytes_ = 0;  // of its file, while it streams
   std::optional<v1::Summary> summary_;
   std::shared_ptr<BridgeCall> call_;
   std::shared_ptr<CallExchange> submission_;

@@ -20,18 +20,61 @@ tl::unexpected<Problem> no_room(const std::string& why) {
   return tl::unexpected(Problem{.status = 507, .reason = "STORE_FULL", .detail = why});
 }
 
-}  // namespace
-
-Outcome<std::shared_ptr<files::MeshSpool>> make_spool(const std::filesystem::path& folder,
-                                                      std::stop_token stop) {
-  auto spool = files::MeshSpool::create(
-      folder, {.stop = std::move(stop), .in_memory = kSmallArray, .small = kSmallPages});
-  if (!spool) return no_room("the server has no room for the mesh while it arrives");
-  return std::shared_ptr<files::MeshSpool>(std::move(*spool));
+tl::unexpected<Problem> no_room_to_arrive() {
+  return no_room("the server has no room for the mesh while it arrives");
 }
 
-Outcome<std::optional<v1::Summary>> take_message(const grpc::ByteBuffer& message,
-                                                 files::MeshSpool& spool) {
+tl::unexpected<Problem> no_room_for_file() {
+  return no_room("the server has no room for the file");
+}
+
+Outcome<files::OutputFile> create_file(const std::filesystem::path& folder,
+                                       const std::string& extension, std::stop_token stop) {
+  auto file = files::OutputFile::create(folder / ("mesh" + extension), std::move(stop));
+  if (!file) return no_room_for_file();
+  return std::move(*file);
+}
+
+// The coordinates of the chunk's vertices in degrees.
+Outcome<files::ScratchArray<double>> to_lonlat(const v1::Chunk& chunk,
+                                               const files::DomainProjection& projection) {
+  std::vector<std::uint32_t> points(chunk.input_points().begin(), chunk.input_points().end());
+  for (std::size_t i = 0; i < points.size(); i += 2) points[i] -= chunk.first_vertex();
+  files::MeshView piece = wire::view_of(chunk);
+  piece.input_points = points;
+  auto lonlat = projection.to_lonlat(piece);
+  if (!lonlat)
+    return tl::unexpected(
+        Problem{.status = 500, .reason = "INTERNAL", .detail = lonlat.error().message});
+  return std::move(*lonlat);
+}
+
+}  // namespace
+
+Outcome<std::shared_ptr<ArrivingMesh>> ArrivingMesh::make(const std::filesystem::path& folder,
+                                                          const files::Names* streamed,
+                                                          std::stop_token stop) {
+  std::shared_ptr<ArrivingMesh> mesh(new ArrivingMesh(folder, std::move(stop)));
+  files::MeshSpoolOptions options{
+      .stop = mesh->stop_, .in_memory = kSmallArray, .small = kSmallPages};
+  if (streamed != nullptr) {
+    auto file = create_file(folder, std::string(kStreamed), mesh->stop_);
+    if (!file) return tl::unexpected(file.error());
+    mesh->file_.emplace(std::move(*file));
+    mesh->writer_.emplace(*mesh->file_);
+    options.on_piece = [&writer = *mesh->writer_, names = *streamed](files::MeshView piece) {
+      piece.names = &names;
+      writer.put_triangles(piece);
+    };
+  }
+  auto spool = files::MeshSpool::create(folder, std::move(options));
+  if (!spool) return no_room_to_arrive();
+  mesh->spool_ = std::move(*spool);
+  return mesh;
+}
+
+Outcome<std::optional<v1::Summary>> ArrivingMesh::take(const grpc::ByteBuffer& message,
+                                                       const SentDomain& sent) {
   grpc::ByteBuffer bytes = message;
   grpc::ProtoBufferReader reader(&bytes);
   v1::GenerateMeshResponse response;
@@ -41,37 +84,39 @@ Outcome<std::optional<v1::Summary>> take_message(const grpc::ByteBuffer& message
   if (response.has_summary()) return std::move(*response.mutable_summary());
   if (!response.has_chunk()) return std::nullopt;
   const v1::Chunk& chunk = response.chunk();
-  const auto taken = spool.append(wire::view_of(chunk));
-  if (!taken) return no_room("the server has no room for the mesh while it arrives");
+  files::MeshView piece = wire::view_of(chunk);
+  files::ScratchArray<double> lonlat;
+  if (sent.projection != nullptr && !sent.projection->to_metres()) {
+    auto brought = to_lonlat(chunk, *sent.projection);
+    if (!brought) return tl::unexpected(brought.error());
+    lonlat = std::move(*brought);
+    piece.coordinates = lonlat.values();
+  }
+  if (!spool_->append(piece)) return no_room_to_arrive();
+  if (streams() && !file_->finish()) return no_room_for_file();
   return std::nullopt;
 }
 
-Outcome<MeshFile> write_mesh_file(files::MeshSpool& spool, const SentDomain& sent,
-                                  const std::string& extension, const std::filesystem::path& folder,
-                                  std::stop_token stop) {
-  auto view = spool.view();
+Outcome<MeshFile> ArrivingMesh::write(const SentDomain& sent, const std::string& extension) {
+  auto view = spool_->view();
   if (!view) return no_room("the server has no room for the mesh");
   files::MeshView mesh = *view;
   mesh.input_point_markers = sent.domain.point_markers;
   mesh.names = &sent.domain.names;
-  files::ScratchArray<double> lonlat;
-  if (sent.projection != nullptr && sent.projection->to_metres())
-    mesh.unit = files::CoordinateUnit::kMetres;
-  if (sent.projection != nullptr && !sent.projection->to_metres()) {
-    auto brought = sent.projection->to_lonlat(mesh);
-    if (!brought)
-      return tl::unexpected(
-          Problem{.status = 500, .reason = "INTERNAL", .detail = brought.error().message});
-    lonlat = std::move(*brought);
-    mesh.coordinates = lonlat.values();
-    mesh.unit = files::CoordinateUnit::kDegrees;
+  if (sent.projection != nullptr)
+    mesh.unit = sent.projection->to_metres() ? files::CoordinateUnit::kMetres
+                                             : files::CoordinateUnit::kDegrees;
+  if (streams()) {
+    writer_->finish(mesh);
+    if (!file_->finish()) return no_room_for_file();
+    return so_far();
   }
-  const files::DataPath path = folder / ("mesh" + extension);
-  auto output = files::OutputFile::create(path, std::move(stop));
-  if (!output) return no_room("the server has no room for the file");
+  auto output = create_file(folder_, extension, stop_);
+  if (!output) return tl::unexpected(output.error());
+  const files::DataPath path = output->target();
   const std::size_t straight =
       files::write_mesh(*files::mesh_format(path), mesh, std::span(&*output, 1), sent.writing);
-  if (!output->finish()) return no_room("the server has no room for the file");
+  if (!output->finish()) return no_room_for_file();
   MeshFile file{.bytes = output->size()};
   if (straight > 0)
     file.warnings.push_back(std::to_string(straight) +

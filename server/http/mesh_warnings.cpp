@@ -46,7 +46,7 @@ void add_warnings(const v1::Summary& summary, const SentDomain& sent, std::uint6
                     layers.cut(), layers.least_thickness(), place(layers.x(), layers.y())));
 }
 
-void warn(std::vector<std::string> warnings, Response& head) {
+void warn(std::vector<std::string> warnings, boost::beast::http::fields& head) {
   if (warnings.size() > kMaxWarnings) {
     const std::size_t more = warnings.size() - (kMaxWarnings - 1);
     warnings.resize(kMaxWarnings - 1);

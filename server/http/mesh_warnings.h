@@ -17,6 +17,6 @@ void add_warnings(const v1::Summary& summary, const SentDomain& sent, std::uint6
                   std::vector<std::string>& warnings);
 
 // The first of them, each on a line of its own in ASCII, and how many more there are.
-void warn(std::vector<std::string> warnings, Response& head);
+void warn(std::vector<std::string> warnings, boost::beast::http::fields& head);
 
 }  // namespace weft::server

@@ -187,6 +187,16 @@ std::vector<Parameter> own_parameters() {
          wish.to = "." + text;
          return "";
        }},
+      {"stream",
+       Type::kSwitch,
+       "Send the file while the mesh is made, as geojson alone can be: its figures and warnings "
+       "come "
+       "after it, as trailers, and if the mesh fails, the answer breaks off",
+       {},
+       false,
+       Use::kArrival,
+       "",
+       [](const std::string& text, MeshWish& wish) { return read_switch(text, wish.stream); }},
       {"order",
        Type::kText,
        "2: triangles of six nodes, for formats that have them. Default: 1",

@@ -34,6 +34,7 @@ struct MeshWish {
   v1::GenerateMeshRequest request{};  // all but the domain, once it is complete
   std::string from{};                 // ".geojson"; empty: what the file looks like
   std::string to{};                   // ".vtu"; empty: what Accept wants
+  bool stream = false;                // send the file while the mesh arrives
   std::optional<double> timeout{};    // seconds
   std::string request_id{};           // of a job
   std::string notify{};               // URL that is told of its end
@@ -47,10 +48,11 @@ struct MeshWish {
 
 // What a parameter is for, in bits of ParameterUses.
 enum class ParameterUse : unsigned {
-  kDomain = 1,   // and what its mesh must satisfy
-  kFile = 2,     // of the mesh
-  kWaiting = 4,  // for it
-  kJob = 8,      // that is kept
+  kDomain = 1,    // and what its mesh must satisfy
+  kFile = 2,      // of the mesh
+  kWaiting = 4,   // for it
+  kJob = 8,       // that is kept
+  kArrival = 16,  // of the mesh, while its file is sent
 };
 using ParameterUses = unsigned;
 

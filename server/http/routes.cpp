@@ -93,7 +93,8 @@ constexpr auto kDomain = static_cast<ParameterUses>(ParameterUse::kDomain);
 constexpr auto kFile = static_cast<ParameterUses>(ParameterUse::kFile);
 constexpr auto kWaiting = static_cast<ParameterUses>(ParameterUse::kWaiting);
 constexpr auto kJob = static_cast<ParameterUses>(ParameterUse::kJob);
-constexpr auto kMesh = kDomain | kFile | kWaiting;
+constexpr auto kArrival = static_cast<ParameterUses>(ParameterUse::kArrival);
+constexpr auto kMesh = kDomain | kFile | kWaiting | kArrival;
 
 constexpr Route kRoutes[] = {
     {{"put", "/v1/mesh", "Makes the mesh of the domain in the body", kMesh, true},

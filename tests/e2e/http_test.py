@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import concurrent.futures
 import json
+import math
 import os
 import pathlib
+import re
 import subprocess
 import time
 
@@ -73,6 +75,19 @@ def test_a_mesh_is_that_of_weft_mesh(tmp_path):
         assert checked.returncode == 0, checked.stdout + checked.stderr
         status, body = curl(tmp_path, f"http://{server.http}/v1/info")
         assert status == 200 and json.loads(body)["engine_version"]
+
+
+def test_a_mesh_that_streams_is_that_of_weft_mesh(tmp_path):
+    # So many points that they come in two chunks.
+    ring = [(math.cos(i * math.tau / 80_000), math.sin(i * math.tau / 80_000)) for i in range(80_000)]
+    (tmp_path / "disk.geojson").write_text(json.dumps({"type": "Polygon", "coordinates": [[*ring, ring[0]]]}))
+    with Server(tmp_path) as server:
+        wish = f"http://{server.http}/v1/mesh?edge=5000&lonlat&format=geojson&stream"
+        assert curl(tmp_path, "-T", "disk.geojson", wish, "-o", "streamed.geojson", "-D", "head")[0] == 200
+        subprocess.run([WEFT, "mesh", "--server", server.grpc, "disk.geojson", "--edge", "5000", "--lonlat", "-o",
+                        "flags.geojson", "-q"], cwd=tmp_path, check=True)
+        assert (tmp_path / "streamed.geojson").read_bytes() == (tmp_path / "flags.geojson").read_bytes()
+        assert re.search(r"^Weft-Triangles: \d{6}\r?$", (tmp_path / "head").read_text(), re.MULTILINE)
 
 
 def test_a_bad_file_is_told_with_its_place(tmp_path):

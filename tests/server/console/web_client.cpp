@@ -192,6 +192,7 @@ WebResponse WebConnection::read_response() {
     while (read_chunk()) {
     }
     response.body = std::exchange(decoded_, {});
+    response.trailers = std::exchange(trailers_, {});
   } else if (!response.header("content-length").empty()) {
     response.body = take(std::stoul(response.header("content-length")));
   }
@@ -202,8 +203,9 @@ bool WebConnection::read_chunk() {
   if (chunks_over_) return false;
   const std::size_t size = std::stoul(take_line(), nullptr, 16);
   decoded_ += take(size);
-  take_line();
   chunks_over_ = size == 0;
+  for (std::string line = take_line(); !line.empty(); line = take_line())
+    trailers_.insert(split_header(line));
   return !chunks_over_;
 }
 

@@ -41,6 +41,7 @@ struct WebResponse {
   int status = 0;                              // 0: the server closed the connection instead
   std::map<std::string, std::string> headers;  // by names in lower case
   std::string body;
+  std::map<std::string, std::string> trailers{};  // of a chunked body; the same
 
   std::string header(const std::string& name) const;  // empty if there is none
 };
@@ -96,6 +97,7 @@ class WebConnection {
   std::string buffer_;   // received, and not taken yet
   std::string decoded_;  // of a chunked body, and no frame yet
   bool chunks_over_ = false;
+  std::map<std::string, std::string> trailers_;
 };
 
 // On a connection of its own.

@@ -292,6 +292,96 @@ TEST(HttpMesh, IsReadToItsEndWhileTheServerDrains) {
   EXPECT_GT(rest.size(), 40u << 19);
 }
 
+TEST(HttpStream, HasTheBytesOfTheFileThatIsMadeAtOnce) {
+  ConsoleServer server(stream, with_http());
+  const std::string coast =
+      R"({"type":"Polygon","coordinates":[[[-74,40],[-73,40],[-73,41],[-74,41],[-74,40]]]})";
+  const std::string target =
+      "/v1/mesh?lonlat&edge=2000&names=region=1:sea&format=geojson&max_triangles=1000000";
+  const WebResponse whole = send(server, "PUT", target, coast);
+  const WebResponse streamed = send(server, "PUT", target + "&stream", coast);
+  ASSERT_EQ(streamed.status, 200) << streamed.body;
+  EXPECT_EQ(streamed.body, whole.body);
+  EXPECT_EQ(streamed.header("content-length"), "");
+  EXPECT_EQ(streamed.header("content-type"), whole.header("content-type"));
+  ASSERT_EQ(streamed.trailers.size(), 3u);
+  for (const auto& [name, text] : streamed.trailers) EXPECT_EQ(text, whole.header(name)) << name;
+  EXPECT_FALSE(streamed.header("content-disposition").empty());
+  problem_in(send(server, "PUT", "/v1/mesh?format=vtu&stream", kSquare), 400, "BAD_OPTION");
+}
+
+const std::string kFirstChunk = "28\r\n{\"type\":\"FeatureCollection\",\"features\":[\r\n";
+
+TEST(HttpStream, BeginsBeforeTheMeshIsMade) {
+  Event seen;
+  ConsoleServer server(
+      [&](const auto&, ChunkSink& sink, auto&) {
+        auto summary = send_chunks(sink, 1);
+        EXPECT_TRUE(seen.wait());
+        return summary;
+      },
+      with_http());
+  WebConnection client(server.http_address());
+  const std::string asked = request("PUT", "/v1/mesh?format=geojson&stream", {}, kSquare);
+  client.send(asked);
+  ASSERT_EQ(client.read_head().status, 200);
+  EXPECT_EQ(client.read_body(kFirstChunk.size()), kFirstChunk);
+  seen.set();
+}
+
+TEST(HttpStream, GoesOnAfterItsAnswerOnTheSameConnection) {
+  ConsoleServer server(stream, with_http());
+  WebConnection client(server.http_address());
+  for (int i = 0; i < 3; ++i) {
+    client.send(request("PUT", "/v1/mesh?edge=0.5&format=geojson&stream", {}, kSquare));
+    EXPECT_TRUE(Json::accept(client.read_response().body));
+  }
+}
+
+TEST(HttpStream, BreaksOffIfTheMeshFails) {
+  Event seen;
+  ConsoleServer server(
+      [&](const auto&, ChunkSink& sink, auto&) -> Result<Summary> {
+        if (auto sent = send_chunks(sink, 1); !sent) return sent;
+        EXPECT_TRUE(seen.wait());
+        return tl::unexpected(Error{ErrorCode::kBoundsNotMet, "", "3 triangles miss a bound"});
+      },
+      with_http());
+  WebConnection client(server.http_address());
+  client.send(request("PUT", "/v1/mesh?format=geojson&stream", {}, kSquare));
+  ASSERT_EQ(client.read_head().status, 200);
+  EXPECT_EQ(client.read_body(kFirstChunk.size()), kFirstChunk);
+  seen.set();
+  EXPECT_TRUE(client.ends());  // without the last chunk
+}
+
+TEST(HttpStream, IsAProblemIfTheMeshFailsBeforeItsFirstByte) {
+  ConsoleServer server(
+      [](const auto&, auto&, auto&) -> Result<Summary> {
+        return tl::unexpected(Error{ErrorCode::kBoundsNotMet, "", "3 triangles miss a bound"});
+      },
+      with_http());
+  problem_in(send(server, "PUT", "/v1/mesh?format=geojson&stream", kSquare), 422, "BOUNDS_NOT_MET");
+}
+
+TEST(HttpStream, EndsWithItsClient) {
+  Event stopped;
+  ConsoleServer server(
+      [&](const auto&, ChunkSink& sink, const weft::Run& run) -> Result<Summary> {
+        if (auto sent = send_chunks(sink, 1); !sent) return sent;
+        auto end = work_until_stopped(run);
+        stopped.set();
+        return end;
+      },
+      with_http());
+  {
+    WebConnection client(server.http_address());
+    client.send(request("PUT", "/v1/mesh?format=geojson&stream", {}, kSquare));
+    ASSERT_EQ(client.read_head().status, 200);
+  }
+  EXPECT_TRUE(stopped.wait());
+}
+
 TEST(HttpMeshes, AreSharedByClients) {
   Workers workers(2);
   const auto meshes = std::make_shared<Meshes>(4, 0.75, workers);
