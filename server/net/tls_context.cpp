@@ -4,10 +4,11 @@
 #include <fmt/format.h>
 #include <openssl/err.h>
 #include <openssl/ssl.h>
-#include <sys/stat.h>
 
 #include <cstring>
 #include <utility>
+
+#include "server/net/watched_file.h"
 
 namespace weft::server {
 namespace {
@@ -76,23 +77,18 @@ TlsContext::TlsContext(TlsOptions options, TlsProtocol protocol, Logger log,
       log_(std::move(log)),
       context_(std::move(context)) {}
 
-std::vector<TlsContext::FileVersion> TlsContext::versions() const {
-  std::vector<FileVersion> versions;
-  for (const std::string& file : {options_.certificate, options_.key, options_.client_ca}) {
-    struct stat status {};
-    if (::stat(file.c_str(), &status) != 0) status = {};
-    versions.push_back({status.st_ino, status.st_mtim.tv_sec, status.st_mtim.tv_nsec});
-  }
-  return versions;
+std::string TlsContext::digests() const {
+  return digest_of(options_.certificate) + digest_of(options_.key) +
+         (options_.client_ca.empty() ? "" : digest_of(options_.client_ca));
 }
 
 std::shared_ptr<ssl::context> TlsContext::current() {
   const auto now = std::chrono::steady_clock::now();
   if (now < next_look_) return context_;
   next_look_ = now + kBetweenLooks;
-  auto versions = this->versions();
-  if (versions == seen_) return context_;
-  seen_ = std::move(versions);
+  std::string digests = this->digests();
+  if (digests == seen_) return context_;
+  seen_ = std::move(digests);
   if (auto context = load(options_, protocol_))
     context_ = std::move(*context);
   else

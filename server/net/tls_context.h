@@ -10,12 +10,9 @@
 
 #include <boost/asio/ssl/context.hpp>
 #include <chrono>
-#include <cstdint>
-#include <ctime>
 #include <memory>
 #include <string>
 #include <tl/expected.hpp>
-#include <vector>
 
 #include "server/net/tls.h"
 #include "server/observe/log.h"
@@ -42,23 +39,16 @@ class TlsContext {
   std::shared_ptr<boost::asio::ssl::context> current();
 
  private:
-  // Files that are renamed into place within a tick of the clock have one time, but two numbers.
-  struct FileVersion {
-    std::uint64_t inode = 0;
-    std::time_t seconds = 0;
-    std::int64_t nanoseconds = 0;
-    friend bool operator==(const FileVersion&, const FileVersion&) = default;
-  };
-
   TlsContext(TlsOptions options, TlsProtocol protocol, Logger log,
              std::shared_ptr<boost::asio::ssl::context> context);
-  std::vector<FileVersion> versions() const;
+  // Of all files.
+  std::string digests() const;
 
   TlsOptions options_;
   TlsProtocol protocol_;
   Logger log_;
   std::shared_ptr<boost::asio::ssl::context> context_;
-  std::vector<FileVersion> seen_;  // none before the first look
+  std::string seen_;  // digests; empty before the first look
   std::chrono::steady_clock::time_point next_look_{};
 };
 

@@ -24,6 +24,7 @@ std::string sha256_of(std::string_view text) {
   return digest;
 }
 
+// The first kLargestFile + 1 bytes at most.
 tl::expected<std::string, std::string> contents_of(const std::filesystem::path& path) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(path.c_str(), "re"),
                                                            &std::fclose);
@@ -31,12 +32,18 @@ tl::expected<std::string, std::string> contents_of(const std::filesystem::path& 
   std::string text(kLargestFile + 1, '\0');
   text.resize(std::fread(text.data(), 1, text.size(), in.get()));
   if (std::ferror(in.get()) != 0) return tl::unexpected(std::string(std::strerror(errno)));
-  if (text.size() > kLargestFile)
-    return tl::unexpected(fmt::format("it has more than {} bytes", kLargestFile));
   return text;
 }
 
+std::string digest_of_contents(const tl::expected<std::string, std::string>& contents) {
+  return sha256_of(contents ? *contents : contents.error());
+}
+
 }  // namespace
+
+std::string digest_of(const std::filesystem::path& path) {
+  return digest_of_contents(contents_of(path));
+}
 
 tl::expected<std::unique_ptr<FileWatcher>, std::string> FileWatcher::open(
     const std::filesystem::path& path, const char* holds, Take take, Logger log,
@@ -84,10 +91,12 @@ void FileWatcher::on_change(std::function<void()> listener) {
 // changes.
 tl::expected<std::size_t, std::string> FileWatcher::read() {
   const auto text = contents_of(path_);
-  std::string seen = sha256_of(text ? *text : text.error());
+  std::string seen = digest_of_contents(text);
   if (seen == last_seen_) return 0;
   last_seen_ = std::move(seen);
   if (!text) return tl::unexpected(text.error());
+  if (text->size() > kLargestFile)
+    return tl::unexpected(fmt::format("it has more than {} bytes", kLargestFile));
   return take_(*text);
 }
 

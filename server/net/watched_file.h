@@ -26,6 +26,10 @@
 
 namespace weft::server {
 
+// Of the first MiB of a file, or of why it cannot be read: differs if the file has changed,
+// whatever its time stamp says.
+std::string digest_of(const std::filesystem::path& path);
+
 // What is the same for all tables.
 class FileWatcher {
  public:
