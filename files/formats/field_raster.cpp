@@ -15,6 +15,9 @@
 namespace weft::files {
 namespace {
 
+// Asks `each` for the degrees of few points of a row: between two of them, the points lie on a
+// straight line if the point in the middle does, within the tolerance; else each half is judged by
+// itself. `each` is slow, because it is PROJ.
 class ToDegrees final : public PlaneToRaster {
  public:
   explicit ToDegrees(const std::function<Point(Point)>& each) : each_(each) {}

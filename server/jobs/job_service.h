@@ -36,8 +36,8 @@ struct JobServiceOptions {
   bool works = true;
   // Whether a client's job may share work or a mesh with another client's.
   bool share_across_clients = true;
-  // Maximum waiting tasks of all clients, and jobs of one client that have not ended, and as many
-  // callbacks of its that are neither delivered nor failed.
+  // Maximum of waiting tasks of all clients; of jobs of one client that have not ended, and of its
+  // callbacks that are neither delivered nor failed.
   std::uint64_t max_queued = 10'000;
   std::uint64_t max_open_of_client = 1'000;
   // Who may have callbacks; outlives the service. Null: nobody.
