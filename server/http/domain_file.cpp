@@ -319,7 +319,7 @@ std::uint64_t bytes_to_read(const DomainFile& file) {
   std::uint64_t grids = 0;
   for (const FieldFile& field : file.fields) grids += kBytesPerGridByte * field.bytes.size();
   const auto chords = [size](std::uint64_t most) { return std::min(1500 * size, most << 20); };
-  if (file.extension == ".zip") return grids + 24 * size;
+  if (file.extension == ".zip") return grids + 25 * size;
   if (file.extension == ".geojson" || file.extension == ".json" || file.extension == ".poly")
     return grids + 40 * size;
   if (file.extension == ".dxf")

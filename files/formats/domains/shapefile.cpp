@@ -9,6 +9,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "files/base/text.h"
@@ -32,29 +34,22 @@ struct DestroyShape {
   void operator()(SHPObject* shape) const { ::SHPDestroyObject(shape); }
 };
 
-// Opens a file; instead of an .shx file that is not there, one in memory.
-SAFile open_or_make(const char* name, const char* access) {
-  std::FILE* file = std::fopen(name, access);
-  const std::filesystem::path path(name);
-  if (file != nullptr || lower_extension(path) != ".shx") return reinterpret_cast<SAFile>(file);
-  for (const char* extension : {".shp", ".SHP"}) {
-    const auto shapes = read_file(std::filesystem::path(path).replace_extension(extension),
-                                  std::numeric_limits<std::uint32_t>::max());
-    const std::string index = shapes ? index_of_shapes(shapes->text()) : "";
-    if (index.empty()) continue;
-    file = ::fmemopen(nullptr, index.size() + 1, "w+b");  // a null byte follows
-    if (file != nullptr) std::fwrite(index.data(), 1, index.size(), file);
-    if (file != nullptr) std::rewind(file);
-    break;
-  }
-  return reinterpret_cast<SAFile>(file);
+// What this thread reads, because Shapelib's hooks are told nothing but a name.
+thread_local const ShapefileParts* reading = nullptr;
+
+SAFile open_part(const char* name, const char*) {
+  const auto part = reading->find(std::filesystem::path(name).extension().string());
+  if (part == reading->end()) return nullptr;
+  const std::string& bytes = part->second;
+  return reinterpret_cast<SAFile>(
+      ::fmemopen(const_cast<char*>(bytes.data()), bytes.size(), "rb"));  // only reads
 }
 
-// Opens files without Shapelib's own messages on stderr: the caller reports the error.
+// Opens parts without Shapelib's own messages on stderr: the caller reports the error.
 SAHooks quiet_hooks() {
   SAHooks hooks;
   ::SASetupDefaultHooks(&hooks);
-  hooks.FOpen = open_or_make;
+  hooks.FOpen = open_part;
   hooks.Error = [](const char*) {};
   return hooks;
 }
@@ -63,20 +58,13 @@ SAHooks quiet_hooks() {
 class Table {
  public:
   // An error if there is a table that cannot be read. It is no error if there is none.
-  Result<void> open(const std::filesystem::path& path, const SAHooks& hooks,
-                    const std::filesystem::path& text) {
-    std::error_code ignored;
-    for (const char* extension : {".dbf", ".DBF"}) {
-      const auto name = std::filesystem::path(path).replace_extension(extension);
-      if (!std::filesystem::exists(name, ignored)) continue;
-      table_.reset(::DBFOpenLL(name.c_str(), "rb", const_cast<SAHooks*>(&hooks)));
-      if (!table_)
-        return fail(ExitCode::kUnreadableInput,
-                    std::filesystem::path(text).replace_extension(extension).string() +
-                        ": is not a dBASE table");
-      return {};
-    }
-    return {};
+  Result<void> open(const SAHooks& hooks, const std::filesystem::path& shapes) {
+    if (!reading->contains(".dbf")) return {};
+    table_.reset(::DBFOpenLL("part.dbf", "rb", const_cast<SAHooks*>(&hooks)));
+    if (table_) return {};
+    return fail(ExitCode::kUnreadableInput,
+                std::filesystem::path(shapes).replace_extension(".dbf").string() +
+                    ": is not a dBASE table");
   }
 
   PropertyValue value(int record, const std::string& field) const {
@@ -99,17 +87,15 @@ class Table {
 
 class Reader {
  public:
-  Reader(const std::filesystem::path& path, const SAHooks& hooks, bool lonlat,
-         const std::string& name)
-      : path_(path), name_(name), hooks_(hooks), builder_(name, lonlat) {}
+  Reader(const std::filesystem::path& path, const SAHooks& hooks, bool lonlat)
+      : path_(path), hooks_(hooks), builder_(path.string(), lonlat) {}
 
   Result<Domain> read() {
     const std::unique_ptr<SHPInfo, CloseShapes> shapes(
-        ::SHPOpenLL(path_.c_str(), "rb", const_cast<SAHooks*>(&hooks_)));
+        ::SHPOpenLL("part.shp", "rb", const_cast<SAHooks*>(&hooks_)));
     if (!shapes)
       return builder_.bad("", "is not a shapefile, or it or the .shx beside it is damaged");
-    if (auto opened = table_.open(path_, hooks_, name_); !opened)
-      return tl::unexpected(opened.error());
+    if (auto opened = table_.open(hooks_, path_); !opened) return tl::unexpected(opened.error());
     int count = 0;
     int kind = 0;
     ::SHPGetInfo(shapes.get(), &count, &kind, nullptr, nullptr);
@@ -186,45 +172,58 @@ class Reader {
   }
 
   std::filesystem::path path_;
-  std::string name_;
   const SAHooks& hooks_;
   Table table_;
   GeometryBuilder builder_;
 };
 
 // The system in the .prj file, which is Esri's WKT.
-std::optional<CoordinateSystem> system_beside(const std::filesystem::path& path) {
-  constexpr std::uint64_t kMaxBytes = 1 << 16;
-  std::error_code ignored;
-  for (const char* extension : {".prj", ".PRJ"}) {
-    const auto name = std::filesystem::path(path).replace_extension(extension);
-    if (!std::filesystem::is_regular_file(name, ignored)) continue;
-    const auto contents = read_text_file(name, kMaxBytes);
-    if (!contents) continue;
-    const std::string text(contents->text());
-    const std::size_t from = text.find('"');
-    const std::size_t to = text.find('"', from + 1);
-    if (from == std::string::npos || to == std::string::npos) continue;
-    return CoordinateSystem{harmless(text.substr(from + 1, to - from - 1)),
-                            text.starts_with("GEOGCS"), text};
-  }
-  return std::nullopt;
+std::optional<CoordinateSystem> system_in(const ShapefileParts& parts) {
+  constexpr std::size_t kMaxBytes = 1 << 16;
+  const auto part = parts.find(".prj");
+  if (part == parts.end() || part->second.size() > kMaxBytes) return std::nullopt;
+  constexpr std::string_view kMark = "\xef\xbb\xbf";
+  const std::string text = part->second.substr(part->second.starts_with(kMark) ? kMark.size() : 0);
+  const std::size_t from = text.find('"');
+  const std::size_t to = text.find('"', from + 1);
+  if (from == std::string::npos || to == std::string::npos) return std::nullopt;
+  return CoordinateSystem{harmless(text.substr(from + 1, to - from - 1)),
+                          text.starts_with("GEOGCS"), text};
 }
 
 }  // namespace
 
 Result<Domain> read_shapefile(const std::filesystem::path& path, bool lonlat) {
-  return read_shapefile(path, lonlat, path.string());
-}
-
-Result<Domain> read_shapefile(const std::filesystem::path& path, bool lonlat,
-                              const std::string& name) {
-  if (std::error_code missing; !std::filesystem::is_regular_file(path, missing))
+  std::error_code missing;
+  if (!std::filesystem::is_regular_file(path, missing))
     return fail(ExitCode::kUnreadableInput,
                 path.string() + ": " + (missing ? missing.message() : "is not a regular file"));
+  ShapefileParts parts;
+  const auto read = [&parts](const std::filesystem::path& name, const char* extension) {
+    auto contents = read_file(name, std::numeric_limits<std::uint32_t>::max());
+    if (contents) parts[extension] = contents->text();
+    return contents;
+  };
+  if (const auto shapes = read(path, ".shp"); !shapes) return tl::unexpected(shapes.error());
+  for (const auto& [extension, capitals] :
+       {std::pair(".shx", ".SHX"), {".dbf", ".DBF"}, {".cpg", ".CPG"}, {".prj", ".PRJ"}})
+    for (const char* each : {extension, capitals}) {
+      const auto name = std::filesystem::path(path).replace_extension(each);
+      if (!std::filesystem::exists(name, missing)) continue;
+      if (const auto part = read(name, extension); !part) return tl::unexpected(part.error());
+      break;
+    }
+  return read_shapefile(std::move(parts), path, lonlat);
+}
+
+Result<Domain> read_shapefile(ShapefileParts parts, const std::filesystem::path& path,
+                              bool lonlat) {
+  if (!parts.contains(".shx")) parts[".shx"] = index_of_shapes(parts.at(".shp"));
+  reading = &parts;
   const SAHooks hooks = quiet_hooks();
-  auto domain = Reader(path, hooks, lonlat, name).read();
-  if (domain) domain->system = system_beside(path);
+  auto domain = Reader(path, hooks, lonlat).read();
+  reading = nullptr;
+  if (domain) domain->system = system_in(parts);
   return domain;
 }
 

@@ -5,11 +5,11 @@
 // the same as in GeoJSON (geojson.h). What is meshed: see geometry_builder.h. Coordinates are taken
 // as they are; a .prj beside it tells their system.
 //
-// Errors (kUnreadableInput) name the file and the record, counted from 0. `name`: what texts call
-// the file instead of its path.
+// Errors (kUnreadableInput) name the file and the record, counted from 0.
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "files/base/error.h"
@@ -18,7 +18,11 @@
 namespace weft::files {
 
 Result<Domain> read_shapefile(const std::filesystem::path& path, bool lonlat = false);
-Result<Domain> read_shapefile(const std::filesystem::path& path, bool lonlat,
-                              const std::string& name);
+
+// Its files in memory, by their extensions in lower case.
+using ShapefileParts = std::map<std::string, std::string>;
+
+// The same of files in memory; texts call them `path`. REQUIRES: there is a .shp.
+Result<Domain> read_shapefile(ShapefileParts parts, const std::filesystem::path& path, bool lonlat);
 
 }  // namespace weft::files

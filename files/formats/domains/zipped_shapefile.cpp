@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "files/formats/domains/zipped_shapefile.h"
 
-#include <stdlib.h>
-
 #include <algorithm>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "files/base/text.h"
@@ -44,27 +40,6 @@ tl::expected<Parts, std::string> parts_of(const ZipArchive& archive) {
   return parts;
 }
 
-// A folder that goes with this.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::error_code missing;
-    std::string name = (std::filesystem::temp_directory_path(missing) / "weft-XXXXXX").string();
-    if (!missing && ::mkdtemp(name.data()) != nullptr) path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  // Empty if it could not be made.
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 }  // namespace
 
 Result<Domain> read_zipped_shapefile(const std::filesystem::path& path, bool lonlat) {
@@ -77,23 +52,14 @@ Result<Domain> read_zipped_shapefile(const std::filesystem::path& path, bool lon
   if (!archive) return bad(archive.error());
   const auto parts = parts_of(*archive);
   if (!parts) return bad(parts.error());
-  const auto no_room = [&path] {
-    return fail(ExitCode::kUnwritableOutput,
-                path.string() + ": there is no room to unpack it in TMPDIR");
-  };
-  const TemporaryFolder folder;
-  if (folder.path().empty()) return no_room();
-  const std::filesystem::path shapes = folder.path() / "part.shp";
+  ShapefileParts unpacked;
   for (const auto& [extension, member] : *parts) {
-    std::string unpacked;
-    const auto bytes = archive->read(member, unpacked);
+    std::string& part = unpacked[extension];
+    const auto bytes = archive->read(member, part);
     if (!bytes) return bad("its " + extension + " " + bytes.error());
-    std::ofstream out(std::filesystem::path(shapes).replace_extension(extension));
-    out.write(bytes->data(), static_cast<std::streamsize>(bytes->size()));
-    out.close();
-    if (!out) return no_room();
+    if (part.empty()) part = *bytes;
   }
-  return read_shapefile(shapes, lonlat, path.string());
+  return read_shapefile(std::move(unpacked), path, lonlat);
 }
 
 std::uint64_t zipped_shapefile_bytes(std::string_view bytes) {

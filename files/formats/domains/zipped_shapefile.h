@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads a domain from the only shapefile in a ZIP archive, in whatever folder there, as
-// read_shapefile does: coastlines and boundaries are mostly published so. Its parts lie in a folder
-// of their own in TMPDIR while they are read.
+// read_shapefile does: coastlines and boundaries are mostly published so. It is unpacked in memory.
 //
 // Errors (kUnreadableInput) name the archive: it is damaged, has no shapefile, or several; and
-// those of read_shapefile. kUnwritableOutput: there is no room for the parts.
+// those of read_shapefile.
 #pragma once
 
 #include <cstdint>
