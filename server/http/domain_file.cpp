@@ -158,6 +158,7 @@ std::string FileTexts::operator()(std::string text) const {
       text.replace(at, from.size(), to);
   };
   replace(path_, name_);
+  replace("--snap ", "snap=");  // a remedy
   replace(" --", " ");
   return text;
 }

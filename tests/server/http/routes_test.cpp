@@ -471,6 +471,7 @@ TEST(HttpLint, FindsFaults) {
   EXPECT_EQ(lint["file"], "domain.poly");
   EXPECT_EQ(lint["counts"]["gap"], 1) << lint;
   EXPECT_EQ(lint["findings"][0]["at"].size(), 2u);
+  EXPECT_EQ(lint["findings"][0]["remedy"], "snap=0.011 closes it");
   EXPECT_FALSE(has(found.body, "/proc/"));
   EXPECT_EQ(Json::parse(send(server, "POST", "/v1/lint?from=poly&snap=0.02", yard).body)["faults"],
             0);
