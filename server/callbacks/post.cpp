@@ -7,7 +7,9 @@
 #include <array>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/ssl/host_name_verification.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/buffer_body.hpp>
@@ -18,7 +20,9 @@
 #include <boost/beast/ssl/ssl_stream.hpp>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <thread>
 
 namespace weft::server {
 namespace {
@@ -57,27 +61,26 @@ class Poster::Sending {
  public:
   explicit Sending(Poster& poster) : poster_(poster) {
     MutexLock lock(poster_.mutex_);
-    poster_.sending_.insert(&io_);
-    if (poster_.stopping_) io_.stop();
+    poster_.sending_.insert(io_.get());
+    if (poster_.stopping_) io_->stop();
   }
   ~Sending() {
     MutexLock lock(poster_.mutex_);
-    poster_.sending_.erase(&io_);
+    poster_.sending_.erase(io_.get());
   }
   Sending(const Sending&) = delete;
   Sending& operator=(const Sending&) = delete;
 
   Posted send(const PostRequest& request) {
-    error_code error;
-    const auto found = tcp::resolver(io_).resolve(request.url.host, request.url.port,
-                                                  tcp::resolver::numeric_service, error);
+    error_code error = find(request.url);
+    if (error == beast::error::timeout) return {.error = "looking up the host took too long"};
     if (error) return {.error = "the host is not found: " + error.message()};
-    beast::tcp_stream stream(io_);
+    beast::tcp_stream stream(*io_);
     error = asio::error::access_denied;
-    for (const auto& each : found) {
-      if (!poster_.rules_.may_reach(each.endpoint().address())) continue;
+    for (const tcp::endpoint& each : found_) {
+      if (!poster_.rules_.may_reach(each.address())) continue;
       stream.expires_at(std::min(Clock::now() + poster_.limits_.connect, end_));
-      error = finish([&](auto done) { stream.async_connect(each.endpoint(), std::move(done)); });
+      error = finish([&](auto done) { stream.async_connect(each, std::move(done)); });
       if (!error) break;
     }
     if (error == asio::error::access_denied)
@@ -96,13 +99,34 @@ class Poster::Sending {
   }
 
  private:
+  // What `begin` begins may call more than once; the first call counts.
   template <class Begin>
   error_code finish(const Begin& begin) {
-    std::optional<error_code> result;
-    begin([&result](const error_code& error, const auto&...) { result = error; });
-    while (!result)
-      if (io_.run_one() == 0) return asio::error::operation_aborted;
-    return *result;
+    const auto result = std::make_shared<std::optional<error_code>>();
+    begin([result](const error_code& error, const auto&...) {
+      if (!*result) *result = error;
+    });
+    while (!*result)
+      if (io_->run_one() == 0) return asio::error::operation_aborted;
+    return **result;
+  }
+
+  // Looks the host up on a thread that may outlive this: the system cannot be told to give up, and
+  // Asio's own look-up would hold up the end of its io_context.
+  error_code find(const CallbackUrl& url) {
+    asio::steady_timer timer(*io_, end_);
+    const auto found = std::make_shared<std::vector<tcp::endpoint>>();
+    const error_code error = finish([&](auto done) {
+      timer.async_wait([done](const error_code&) mutable { done(beast::error::timeout); });
+      std::thread([io = io_, look_up = poster_.look_up_, host = url.host, port = url.port, found,
+                   done] {
+        error_code failed;
+        *found = look_up(host, port, failed);
+        asio::post(*io, [done, failed]() mutable { done(failed); });
+      }).detach();
+    });
+    if (!error) found_ = std::move(*found);
+    return error;
   }
 
   template <class Stream>
@@ -139,12 +163,26 @@ class Poster::Sending {
 
   Poster& poster_;
   const Clock::time_point end_ = Clock::now() + poster_.limits_.total;
-  asio::io_context io_{1};
-  const asio::executor_work_guard<asio::io_context::executor_type> work_{io_.get_executor()};
+  std::vector<tcp::endpoint> found_;
+  const std::shared_ptr<asio::io_context> io_ = std::make_shared<asio::io_context>(1);
+  const asio::executor_work_guard<asio::io_context::executor_type> work_{io_->get_executor()};
 };
 
-Poster::Poster(AddressRules rules, const PostLimits& limits)
-    : rules_(std::move(rules)), limits_(limits), authorities_(asio::ssl::context::tls_client) {
+std::vector<tcp::endpoint> look_up(const std::string& host, const std::string& port,
+                                   error_code& error) {
+  asio::io_context io;
+  std::vector<tcp::endpoint> found;
+  for (const auto& each :
+       tcp::resolver(io).resolve(host, port, tcp::resolver::numeric_service, error))
+    found.push_back(each.endpoint());
+  return found;
+}
+
+Poster::Poster(AddressRules rules, const PostLimits& limits, LookUp look_up)
+    : rules_(std::move(rules)),
+      limits_(limits),
+      look_up_(look_up),
+      authorities_(asio::ssl::context::tls_client) {
   SSL_CTX_set_min_proto_version(authorities_.native_handle(), TLS1_2_VERSION);
   authorities_.set_default_verify_paths();
   authorities_.set_verify_mode(asio::ssl::verify_peer);

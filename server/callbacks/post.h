@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sends a POST to a URL that a stranger chose.
 //
-// The host is looked up once; of its addresses only those that AddressRules lets be reached are
-// connected to, as they were found, so that no later answer of a name server matters. Redirections
-// are not followed. What comes is bounded in time and size, and ignored but for its status. TLS
-// verifies the certificate for the host, by the system's authorities.
+// The host is looked up once, and connections go to the addresses that were found then, if
+// AddressRules lets them be reached: what a name server answers later does not matter. Redirections
+// are not followed. The answer is bounded in time and size; only its status is used. TLS verifies
+// the certificate for the host, by the system's authorities.
 //
 //   Poster poster(rules, {});
 //   const Posted posted = poster.post({.url = *url, .headers = {{"webhook-id", id}}, .body =
@@ -12,6 +12,7 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ssl/context.hpp>
 #include <chrono>
 #include <cstddef>
@@ -43,13 +44,22 @@ struct Posted {
   std::string error{};   // why there is no answer
 };
 
+// Returns the addresses of a host, and may take as long as it wants. Thread-safe, and outlives all.
+using LookUp = std::vector<boost::asio::ip::tcp::endpoint> (*)(const std::string& host,
+                                                               const std::string& port,
+                                                               boost::system::error_code& error);
+
+// As the system does.
+std::vector<boost::asio::ip::tcp::endpoint> look_up(const std::string& host,
+                                                    const std::string& port,
+                                                    boost::system::error_code& error);
+
 // Thread-safe.
 class Poster {
  public:
-  Poster(AddressRules rules, const PostLimits& limits);
+  Poster(AddressRules rules, const PostLimits& limits, LookUp look_up = server::look_up);
 
-  // Returns when there is an answer, or will be none. Looking up the host takes as long as the
-  // system lets it.
+  // Returns when there is an answer, or will be none.
   Posted post(const PostRequest& request);
 
   // Ends what is being sent; what is sent later is not.
@@ -60,6 +70,7 @@ class Poster {
 
   const AddressRules rules_;
   const PostLimits limits_;
+  const LookUp look_up_;
   boost::asio::ssl::context authorities_;
   Mutex mutex_;
   bool stopping_ ABSL_GUARDED_BY(mutex_) = false;

@@ -105,6 +105,17 @@ TEST(Post, WaitsForAnAnswerForALimitedTime) {
   EXPECT_EQ(posted.error, "it took too long");
 }
 
+TEST(Post, WaitsForANameServerForALimitedTime) {
+  static Event answered;
+  Poster poster(loopback(), {.total = milliseconds(200)}, [](const auto&, const auto&, auto&) {
+    EXPECT_TRUE(answered.wait());
+    return std::vector<boost::asio::ip::tcp::endpoint>();
+  });
+  EXPECT_EQ(post(poster, "http://slow.example/").error, "looking up the host took too long");
+  poster.stop();
+  answered.set();
+}
+
 TEST(Post, ABodyThatNeverEndsDoesNotHideItsStatus) {
   const Receiver slow(
       [](const Received&) { return "HTTP/1.1 200 OK\r\nContent-Length: 9\r\n\r\nabc"; });
