@@ -371,7 +371,7 @@ TEST(Bridge, EndsOpenStreamsWithAReasonWhenTheServerStops) {
   WebConnection browser(server.address());
   browser.send(call_request(kGenerateMesh, framed(mesh_request())));
   ASSERT_TRUE(started.wait());
-  std::thread drainer([&] { server->drain(std::chrono::seconds(0)); });
+  std::jthread drainer([&] { server->drain(std::chrono::seconds(0)); });
   const WebOutcome outcome = browser.read_call();
   EXPECT_EQ(outcome.status().error_code(), StatusCode::UNAVAILABLE);
   EXPECT_EQ(reason_of(outcome), "STOPPING");
