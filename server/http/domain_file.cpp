@@ -273,7 +273,16 @@ Outcome<SentDomain> take_request(std::string request, MeshWish wish) try {
   files::NameReader names("the request");
   protozero::pbf_reader message(request);
   constexpr auto kMessage = protozero::pbf_wire_type::length_delimited;
-  while (message.next(v1::GenerateMeshRequest::kDomainFieldNumber, kMessage)) {
+  while (message.next()) {
+    if (message.tag() == v1::GenerateMeshRequest::kSamplePointsFieldNumber)
+      return tl::unexpected(Problem{.status = 400,
+                                    .reason = "BAD_OPTION",
+                                    .detail = "sample_points ask for a size, and make no mesh"});
+    if (message.tag() != v1::GenerateMeshRequest::kDomainFieldNumber ||
+        message.wire_type() != kMessage) {
+      message.skip();
+      continue;
+    }
     protozero::pbf_reader domain = message.get_message();
     while (domain.next()) {
       const bool of_marker = domain.tag() == v1::Domain::kMarkerNamesFieldNumber;

@@ -18,7 +18,8 @@ void MeshRecording::add(const grpc::ByteBuffer& message) {
 std::shared_ptr<const FinishedMesh> MeshRecording::finish(const Summary& summary) && {
   if (!mesh_) return nullptr;
   mesh_->summary = summary;
-  mesh_->bytes += sizeof(FinishedMesh) + summary.leaves.size() * sizeof(summary.leaves[0]);
+  mesh_->bytes += sizeof(FinishedMesh) + summary.leaves.size() * sizeof(summary.leaves[0]) +
+                  summary.sampled_bounds.size() * sizeof(summary.sampled_bounds[0]);
   return mesh_->bytes <= largest_ ? std::move(mesh_) : nullptr;
 }
 

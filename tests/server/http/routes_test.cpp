@@ -576,6 +576,11 @@ TEST(HttpMesh, ComesOfARequestOfTheProtocol) {
       400, "BAD_OPTION");
   problem_in(send(server, "POST", "/v1/mesh?edge=1", request_of_square(), type), 400, "BAD_OPTION");
   problem_in(send(server, "POST", "/v1/mesh", "\x0a\x63", type), 400, "MALFORMED_REQUEST");
+  v1::GenerateMeshRequest samples;
+  samples.add_sample_points(1);
+  problem_in(
+      send(server, "POST", "/v1/mesh", request_of_square() + samples.SerializeAsString(), type),
+      400, "BAD_OPTION");
   v1::GenerateMeshRequest bad;
   bad.ParseFromString(request_of_square());
   bad.mutable_size()->set_constant(-1);

@@ -35,6 +35,15 @@ TEST(MeshCache, DropsTheMeshThatWasAskedForLongestAgo) {
   for (const char* key : {"a", "c", "d"}) EXPECT_TRUE(cache.find(key)) << key;
 }
 
+TEST(MeshCache, CountsWhatASummaryHolds) {
+  Summary summary;
+  summary.sampled_bounds.resize(1000);
+  summary.leaves.resize(1000);
+  const auto mesh = MeshRecording(kMiB).finish(summary);
+  ASSERT_TRUE(mesh);
+  EXPECT_GE(mesh->bytes, 1000 * (sizeof(double) + sizeof(Box)));
+}
+
 TEST(MeshCache, NeverHoldsMoreThanItsCapacity) {
   MeshCache cache(kMiB);
   for (int i = 0; i < 100; ++i) {
