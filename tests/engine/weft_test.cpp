@@ -99,6 +99,44 @@ TEST(WholeMesh, IsNoneIfTheRunEnds) {
   EXPECT_EQ(mesh({}).error().code, ErrorCode::kTooFewPoints);
 }
 
+TEST(SampledSize, IsToldInsteadOfAMesh) {
+  MeshRequest request = two_squares(0.001);
+  const auto made = mesh(request);
+  ASSERT_TRUE(made);
+  request.sample_points = {{0.5, 0.5}, {3, 0}};
+  const auto told = mesh(request);
+  ASSERT_TRUE(told) << told.error().message;
+  const Summary& summary = told->summary;
+  EXPECT_TRUE(told->triangles.empty());
+  EXPECT_EQ(summary.chunks, 0u);
+  ASSERT_EQ(summary.sampled_bounds.size(), 2u);
+  EXPECT_EQ(summary.sampled_bounds[0], 0.001);
+  EXPECT_TRUE(std::isnan(summary.sampled_bounds[1]));
+  EXPECT_NEAR(summary.expected_triangles, static_cast<double>(made->triangles.size()),
+              0.1 * static_cast<double>(made->triangles.size()));
+  EXPECT_LT(estimate(request).bytes, estimate(two_squares(1e-6)).bytes / 4);
+}
+
+TEST(SampledSize, IsRefusedWhereItIsNone) {
+  MeshRequest request = two_squares(1);
+  request.size = SizeSpec("x - 1");
+  request.sample_points = {{1.5, 0.5}, {0.5, 0.25}};
+  const auto told = mesh(request);
+  ASSERT_FALSE(told);
+  EXPECT_EQ(told.error().code, ErrorCode::kBadSizeValue);
+  EXPECT_EQ(told.error().at, (Point{0.5, 0.25}));
+}
+
+TEST(SampledSize, IsThatOfFewFinitePoints) {
+  MeshRequest request = two_squares(1);
+  request.sample_points = {{0, 0}, {1, NAN}};
+  ASSERT_TRUE(validate(request));
+  EXPECT_EQ(validate(request)->field, "sample_points[1]");
+  request.sample_points.assign(kMaxSamplePoints + 1, {0, 0});
+  ASSERT_TRUE(validate(request));
+  EXPECT_EQ(validate(request)->field, "sample_points");
+}
+
 TEST(ValidRequest, HasNothingThatIsRefusedBeforeWork) {
   EXPECT_FALSE(validate(two_squares(0.01)));
   const auto field_of = [](const MeshRequest& request) {
