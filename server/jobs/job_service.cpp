@@ -51,8 +51,8 @@ tl::expected<std::uint64_t, Failure> check_and_estimate(const v1::GenerateMeshRe
                                                         const Limits& limits,
                                                         const MemoryBudget* runs) {
   if (request.sample_points_size() > 0)
-    return tl::unexpected(
-        Failure{Reason::kBadOption, "sample_points", "a job makes a mesh, sample_points make none"});
+    return tl::unexpected(Failure{Reason::kBadOption, "sample_points",
+                                  "a job makes a mesh, sample_points make none"});
   const auto converted = admissible(request, limits);
   if (!converted) return tl::unexpected(converted.error());
   if (const auto error = check_pslg(converted->pslg)) return tl::unexpected(failure_of(*error));
