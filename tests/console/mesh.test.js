@@ -150,7 +150,7 @@ test("a table is meshed, and what is odd in a file is said with what to do", asy
   await phase(page, "done");
   const gap = "5 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n5 0 0.001\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 5\n0\n";
   await drop(page, "gap.poly", gap);
-  await textMatches(page, ".findings", /a gap of 0\.001 [^]*line 8[^]*line 11; --snap/);
+  await textMatches(page, ".findings", /a gap of 0\.001 [^]*line 8[^]*line 11; snap=/);
 });
 
 test("a shapefile in an archive is meshed", async (t) => {

@@ -14,13 +14,15 @@ import pathlib
 import time
 from collections.abc import Callable
 from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_size_t, c_uint64, c_void_p
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _carried, _protocol, errors, results
 from .errors import DomainError, MissingPackage
+
+_T = TypeVar("_T")
 
 _NAME = "libweft.so.0"
 _STAGES = ("queued", "triangulate", "size", "refine", "emit")
@@ -130,7 +132,7 @@ def summarize(message: Any) -> Any:
 
 
 def _run(message: Any, on_progress: Callable[[results.Progress], object] | None,
-         take: Callable[[Any, Any], Any]) -> Any:
+         take: Callable[[Any, Any], _T]) -> _T:
     library = _library()
     request = message.SerializeToString()
     watch = _Watch(on_progress)
