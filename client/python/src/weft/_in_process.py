@@ -33,7 +33,8 @@ class SampledSize:
     @property
     def edges(self) -> npt.NDArray[np.float64]:
         """(n,): the length of edges of equilateral triangles that are so large."""
-        return np.sqrt(self.bounds * (4 / np.sqrt(3)))
+        lengths: npt.NDArray[np.float64] = np.sqrt(self.bounds * (4 / np.sqrt(3)))
+        return lengths
 
 
 def sample_size(domain: DomainLike, points: npt.ArrayLike, size: Size = None, min_angle: float = 20,
