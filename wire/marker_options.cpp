@@ -134,4 +134,11 @@ std::optional<MarkerFault> fill(const MarkerOptions& options, const files::NameT
   return std::nullopt;
 }
 
+std::vector<std::array<std::int32_t, 2>> periodic_sides(const v1::Quality& quality) {
+  std::vector<std::array<std::int32_t, 2>> sides;
+  for (const v1::PeriodicSides& pair : quality.periodic())
+    sides.push_back({pair.from(), pair.to()});
+  return sides;
+}
+
 }  // namespace weft::wire

@@ -8,7 +8,9 @@
 //   fill(options, domain.names.markers, request);  // request.quality().keep().markers() is {4, 2}
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,5 +56,8 @@ struct MarkerFault {
 // Sets the fields, and returns what is wrong: a name that no marker has.
 std::optional<MarkerFault> fill(const MarkerOptions& options, const files::NameTable& markers,
                                 v1::GenerateMeshRequest& request);
+
+// The sides that a request asks to repeat each other, by markers.
+std::vector<std::array<std::int32_t, 2>> periodic_sides(const v1::Quality& quality);
 
 }  // namespace weft::wire

@@ -46,6 +46,7 @@ Result<MeshReport> download(JobServer& server, const v1::Job& job, const InputDo
       input != nullptr ? input->domain.names : names_of(report->summary.request().domain());
   mesh->names = &names;
   if (auto found = output.find_markers(names.markers); !found) return tl::unexpected(found.error());
+  output.set_periodic(report->summary.request().quality());
   if (input != nullptr) {
     add_projection(*input, *report);
     if (auto set = output.set_domain(input->domain, input->projection); !set)

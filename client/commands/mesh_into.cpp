@@ -44,6 +44,7 @@ Result<MeshReport> mesh_into(const Connection& connection, const InputDomain& in
     add_warnings({std::move(*warning)}, *report);
   add_warnings(request_options.warnings, *report);
   if (output == nullptr) return report;
+  output->set_periodic(request_options.asked.quality());
   auto mesh = (*spool)->view();
   if (!mesh) return tl::unexpected(mesh.error());
   mesh->input_point_markers = input.domain.point_markers;

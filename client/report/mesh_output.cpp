@@ -19,6 +19,7 @@
 #include "files/formats/derived/mesh_parts.h"
 #include "files/formats/derived/renumbered_mesh.h"
 #include "files/formats/mesh_formats.h"
+#include "wire/marker_options.h"
 
 namespace weft::client {
 namespace {
@@ -170,6 +171,10 @@ Result<std::unique_ptr<MeshSpool>> MeshOutput::make_spool() {
 Result<void> MeshOutput::find_markers(const NameTable& markers,
                                       std::span<const std::int32_t> open_in_file) {
   return find_open_boundaries(options_.writing, markers, open_in_file);
+}
+
+void MeshOutput::set_periodic(const v1::Quality& quality) {
+  options_.writing.periodic = wire::periodic_sides(quality);
 }
 
 Result<void> MeshOutput::set_domain(const Domain& domain,

@@ -73,6 +73,8 @@ class MeshOutput {
   // Decides which markers are open boundaries, as find_open_boundaries does.
   Result<void> find_markers(const NameTable& markers,
                             std::span<const std::int32_t> open_in_file = {});
+  // The mesh has such sides.
+  void set_periodic(const v1::Quality& quality);
   // REQUIRES: find_markers was called if the options give markers by name.
   // `mesh` is the spool's view; any view if nothing is drawn. Values at the vertices are sampled in
   // the plane in which it arrives, and written after those that it has, which REQUIRES other names

@@ -15,6 +15,7 @@
 #include "files/formats/derived/faces.h"
 #include "files/formats/derived/mesh_edges.h"
 #include "files/formats/derived/middles.h"
+#include "files/formats/derived/periodic_nodes.h"
 #include "files/formats/derived/second_order.h"
 #include "files/formats/format_names.h"
 #include "files/formats/meshes/adcirc.h"
@@ -52,7 +53,9 @@ void one_file(const MeshView& mesh, Files files, const Options&) {
 }
 
 void write_gmsh(const MeshView& mesh, Files files, const Options& options) {
-  options.msh_version == MshVersion::k22 ? write_msh22(mesh, files[0]) : write_msh(mesh, files[0]);
+  const std::vector<PeriodicNodes> periodic = periodic_nodes(mesh, options.periodic);
+  options.msh_version == MshVersion::k22 ? write_msh22(mesh, periodic, files[0])
+                                         : write_msh(mesh, periodic, files[0]);
 }
 
 void write_triangle(const MeshView& mesh, Files files, const Options&) {

@@ -38,6 +38,8 @@ struct MeshWriteOptions {
   std::vector<NodalOption> nodal{};     // values at the vertices
   Renumbering renumbering = Renumbering::kNone;  // of the vertices
   std::optional<std::uint32_t> parts{};          // to divide the triangles into
+  // Sides that repeat each other, by markers; .msh has their nodes in pairs.
+  std::vector<std::array<std::int32_t, 2>> periodic{};
 
   bool opens_boundaries() const {
     return !open_boundaries.empty() || !open_boundary_names.empty() || open_deeper;

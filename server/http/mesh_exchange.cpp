@@ -405,6 +405,7 @@ void MeshExchange::ended(const grpc::Status& status, const Metadata&) {
   if (purpose_ == Purpose::kStored) {
     SentDomain kept{.writing = wish_.writing};
     kept.domain.names = names_of(summary_->request().domain());
+    kept.writing.periodic = wire::periodic_sides(summary_->request().quality());
     summary_->clear_request();
     if (const auto found = find_open_boundaries(kept.writing, kept.domain.names.markers); !found)
       return refuse({.status = 400,

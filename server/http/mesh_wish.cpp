@@ -389,6 +389,7 @@ std::optional<Problem> complete(const files::NameTable& markers, MeshWish& wish)
     for (const wire::MarkerOption& option : wire::marker_options())
       if (files::is_within(fault->field, option.path))
         return bad_parameter(with_underscores(option.name), fault->error.message);
+  wish.writing.periodic = wire::periodic_sides(wish.request.quality());
   for (const NamedDomainField& given : wish.fields) {
     v1::NamedField& field = *wish.request.mutable_size()->add_fields();
     field.set_name(given.name);

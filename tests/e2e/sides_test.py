@@ -134,3 +134,56 @@ def test_meshes_that_do_not_meet_are_refused(tmp_path: pathlib.Path) -> None:
     assert not (tmp_path / "all.vtu").exists()
     assert "overlap" in weft(tmp_path, "stitch", kept, kept, "-o", "all.vtu").stderr
     assert weft(tmp_path, "stitch", kept, "-o", "all.vtu").returncode == 2
+
+
+CELL = """\
+4 2 0 0
+1 0 0
+2 4 0
+3 4 2
+4 0 2
+4 1
+1 1 2 1
+2 2 3 2
+3 3 4 3
+4 4 1 4
+0
+"""
+
+
+def test_gmsh_has_the_nodes_of_periodic_sides_in_pairs(tmp_path: pathlib.Path) -> None:
+    import gmsh  # Debian's
+
+    (tmp_path / "cell.poly").write_text(CELL)
+    run(tmp_path, "mesh", "cell.poly", "--edge", "0.1 + 0.1*x", "--periodic", "4:2,1:3", "-o", "cell.msh", "-q")
+    gmsh.initialize(["gmsh", "-v", "2"])
+    try:
+        gmsh.open(str(tmp_path / "cell.msh"))
+        found = {}
+        for _, curve in gmsh.model.getEntities(1):
+            master, nodes, images, motion = gmsh.model.mesh.getPeriodicNodes(1, curve)
+            if master != curve:
+                at = [np.array([gmsh.model.mesh.getNode(node)[0][:2] for node in side]) for side in (images, nodes)]
+                found[curve] = master, len(nodes), at[1] - at[0], np.reshape(motion, (4, 4))[:2, 3]
+    finally:
+        gmsh.finalize()
+    assert {curve: master for curve, (master, *_) in found.items()} == {2: 4, 3: 1}
+    for curve, shift in ((2, (4, 0)), (3, (0, 2))):
+        _, count, steps, moved = found[curve]
+        assert count > 10 and np.allclose(steps, shift, atol=1e-8) and np.allclose(moved, shift, atol=1e-8)
+
+
+def test_the_pairs_are_in_the_older_version_of_gmshs_format(tmp_path: pathlib.Path) -> None:
+    (tmp_path / "cell.poly").write_text(CELL)
+    run(tmp_path, "mesh", "cell.poly", "--edge", "0.3", "--periodic", "4:2", "-o", "cell.msh", "--msh-version", "2.2", "-q")
+    lines = (tmp_path / "cell.msh").read_text().splitlines()
+    nodes = [line.split() for line in lines[lines.index("$Nodes") + 2:lines.index("$EndNodes")]]
+    at = {int(tag): np.array([float(x), float(y)]) for tag, x, y, _ in nodes}
+    count, sides, pairs, *listed = lines[lines.index("$Periodic") + 1:lines.index("$EndPeriodic")]
+    assert (count, sides, int(pairs)) == ("1", "1 2 4", len(listed))
+    assert len(listed) > 5
+    for pair in listed:
+        image, node = map(int, pair.split())
+        assert np.allclose(at[image] - at[node], (4, 0), atol=1e-8)
+    run(tmp_path, "mesh", "cell.poly", "--edge", "0.3", "-o", "plain.msh", "--msh-version", "2.2", "-q")
+    assert "$Periodic" not in (tmp_path / "plain.msh").read_text()

@@ -4,22 +4,25 @@
 //
 // Each region is a surface entity, each marker a curve entity, with a physical group
 // (msh_groups.h). In 4.1, vertices on edges belong to a curve, the others to a surface. Vertex i
-// has the tag i + 1.
+// has the tag i + 1. $Periodic has sides that repeat each other: the second of a pair, then the
+// first, its master.
 #pragma once
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "files/base/atomic_file.h"
 #include "files/base/error.h"
+#include "files/formats/derived/periodic_nodes.h"
 #include "files/formats/derived/vertex_values.h"
 #include "files/formats/mesh.h"
 
 namespace weft::files {
 
-void write_msh(const MeshView& mesh, OutputFile& file);
-void write_msh22(const MeshView& mesh, OutputFile& file);
+void write_msh(const MeshView& mesh, std::span<const PeriodicNodes> periodic, OutputFile& file);
+void write_msh22(const MeshView& mesh, std::span<const PeriodicNodes> periodic, OutputFile& file);
 
 // Reads triangles, lines (and points, which are dropped) of a 4.1 or 2.2 file, binary or ASCII. The
 // tag of an element's first physical group is its region or marker, and the group's name is the

@@ -31,9 +31,23 @@ void put_elements(OutputFile& file, const MeshView& mesh, std::span<const std::u
   }
 }
 
+void put_periodic(OutputFile& file, const LabelTags& markers,
+                  std::span<const PeriodicNodes> periodic) {
+  if (periodic.empty()) return;
+  file.put("$Periodic\n");
+  put_line(file, periodic.size());
+  for (const PeriodicNodes& nodes : periodic) {
+    put_line(file, 1, markers.find(nodes.markers[1]) + 1, markers.find(nodes.markers[0]) + 1);
+    put_line(file, nodes.pairs.size());
+    for (const auto& [first, second] : nodes.pairs)
+      put_line(file, second + std::int64_t{1}, first + std::int64_t{1});
+  }
+  file.put("$EndPeriodic\n");
+}
+
 }  // namespace
 
-void write_msh22(const MeshView& mesh, OutputFile& file) {
+void write_msh22(const MeshView& mesh, std::span<const PeriodicNodes> periodic, OutputFile& file) {
   const LabelTags markers(mesh.pages, mesh.edge_markers, mesh.names->markers);
   const LabelTags regions(mesh.pages, mesh.regions, mesh.names->regions);
   file.put("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
@@ -50,6 +64,7 @@ void write_msh22(const MeshView& mesh, OutputFile& file) {
   put_elements(file, mesh, mesh.triangles, mesh.triangle_nodes(), mesh.regions, regions,
                msh_triangle_type(mesh.order), number);
   file.put("$EndElements\n");
+  put_periodic(file, markers, periodic);
   put_node_data(file, mesh, /*binary=*/false);
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "files/formats/meshes/msh.h"
@@ -181,9 +183,32 @@ void put_elements(OutputFile& file, const MeshView& mesh, const Groups& curves,
   file.put("\n$EndElements\n");
 }
 
+void put_periodic(OutputFile& file, const Groups& curves, std::span<const PeriodicNodes> periodic) {
+  if (periodic.empty()) return;
+  file.put("$Periodic\n");
+  file.put_raw(std::uint64_t{periodic.size()});
+  for (const PeriodicNodes& nodes : periodic) {
+    file.put_raw(std::int32_t{1});
+    for (const std::int32_t marker : {nodes.markers[1], nodes.markers[0]})
+      file.put_raw(static_cast<std::int32_t>(curves.find(marker) + 1));
+    // By rows, of homogeneous coordinates.
+    const double c = nodes.cosine, s = nodes.sine;
+    const std::array<double, 16> motion{c, -s, 0, nodes.dx, s, c, 0, nodes.dy,
+                                        0, 0,  1, 0,        0, 0, 0, 1};
+    file.put_raw(std::uint64_t{motion.size()});
+    file.put_array(std::span<const double>(motion));
+    file.put_raw(std::uint64_t{nodes.pairs.size()});
+    for (const auto& [first, second] : nodes.pairs) {
+      file.put_raw(std::uint64_t{second} + 1);
+      file.put_raw(std::uint64_t{first} + 1);
+    }
+  }
+  file.put("\n$EndPeriodic\n");
+}
+
 }  // namespace
 
-void write_msh(const MeshView& mesh, OutputFile& file) {
+void write_msh(const MeshView& mesh, std::span<const PeriodicNodes> periodic, OutputFile& file) {
   const Groups curves(mesh, mesh.edge_markers, mesh.names->markers);
   const Groups surfaces(mesh, mesh.regions, mesh.names->regions);
   file.put("$MeshFormat\n4.1 1 8\n");
@@ -193,6 +218,7 @@ void write_msh(const MeshView& mesh, OutputFile& file) {
   put_entities(file, mesh, curves, surfaces);
   put_nodes(file, mesh, curves, surfaces);
   put_elements(file, mesh, curves, surfaces);
+  put_periodic(file, curves, periodic);
   put_node_data(file, mesh, /*binary=*/true);
 }
 
