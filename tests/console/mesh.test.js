@@ -324,7 +324,10 @@ test("the size is shown before there is a mesh, with about how many triangles it
   await fill(page, "#gradation", "0.01");
   await until("the limit is shown", async () => (await about()) > even / 2);
   await fill(page, "#size", "0.1 +");
+  const place = () => page.$eval(".desk-foot .primary", (button) => button.getBoundingClientRect().top);
+  const before = await place();
   await page.waitForFunction(() => !/about/.test(document.querySelector(".desk-foot").innerText));
+  assert.equal(await place(), before); // no button moves under the mouse
   await page.waitForSelector(".legend", { hidden: true });
 });
 

@@ -261,7 +261,8 @@ export function MeshPage() {
           <button type="button" disabled={sketch !== undefined} title="The server keeps the mesh of a job" onClick={() => void submit()}>
             As a job
           </button>
-          {preview && preview.triangles > 0 && <span class="faint">about {count(rounded(preview.triangles))} triangles</span>}
+          {/* It has its place before it is known, so that no button moves under the mouse. */}
+          <span class="faint">{preview?.triangles ? `about ${count(rounded(preview.triangles))} triangles` : "\u00a0"}</span>
           {submitProblem && (
             <p class="problem" role="alert">
               {submitProblem}
