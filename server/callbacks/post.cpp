@@ -24,14 +24,11 @@
 #include <optional>
 #include <thread>
 
+#include "server/net/beast.h"
+
 namespace weft::server {
 namespace {
 
-namespace asio = boost::asio;
-namespace beast = boost::beast;
-namespace http = boost::beast::http;
-using boost::system::error_code;
-using tcp = boost::asio::ip::tcp;
 using Clock = std::chrono::steady_clock;
 
 // Of an answer.

@@ -29,16 +29,11 @@
 #include "server/console/pages.h"
 #include "server/console/problem.h"
 #include "server/console/transport.h"
+#include "server/net/beast.h"
 #include "server/net/peer.h"
 
 namespace weft::server {
 namespace {
-
-namespace asio = boost::asio;
-namespace beast = boost::beast;
-namespace http = boost::beast::http;
-using boost::system::error_code;
-using tcp = boost::asio::ip::tcp;
 
 constexpr std::uint32_t kMaxHeaderBytes = 16 << 10;  // the request line and all headers
 constexpr std::size_t kWindow = std::size_t{64} << 10;

@@ -21,16 +21,11 @@
 #include <utility>
 
 #include "server/net/acceptor.h"
+#include "server/net/beast.h"
 #include "server/net/listen.h"
 
 namespace weft::server {
 namespace {
-
-namespace asio = boost::asio;
-namespace beast = boost::beast;
-namespace http = boost::beast::http;
-using boost::system::error_code;
-using tcp = boost::asio::ip::tcp;
 
 constexpr std::uint32_t kMaxRequestBytes = 8192;
 
