@@ -115,6 +115,29 @@ TEST_P(StoreTest, ACallbackWhoseLeaseRanOutIsClaimedAgain) {
   EXPECT_EQ(store_->settle_callback(*second, CallbackState::kFailed, "", kNoDelay), Held::kLost);
 }
 
+TEST_P(StoreTest, TheCallbackThatIsDueForLongestIsClaimedFirst) {
+  made("k", {"a"});
+  std::vector<std::string> ids;
+  for (int i = 0; i < 5; ++i) {
+    ids.push_back(submit(with_callback("ann", "k")).id);
+    backend_->pass(seconds(1));
+  }
+  for (const std::string& id : ids) EXPECT_EQ(claim_callback(*store_)->id, id);
+}
+
+TEST_P(StoreTest, ACallbackIsDueWithinTheLongestDelayWhateverIsAskedFor) {
+  made("k", {"a"});
+  submit(with_callback("ann", "k"));
+  ASSERT_TRUE((*store_->claim_callback(hours(100), {}, {})).has_value());
+  backend_->pass(kLongestCallbackDelay + seconds(1));
+  const auto claimed = claim_callback(*store_);
+  ASSERT_TRUE(claimed);
+  ASSERT_EQ(store_->settle_callback(*claimed, CallbackState::kPending, "", hours(100)),
+            Held::kHeld);
+  backend_->pass(kLongestCallbackDelay + seconds(1));
+  EXPECT_TRUE(claim_callback(*store_));
+}
+
 TEST_P(StoreTest, CallbacksOfSomeOwnersAndToSomePlacesMayBeLeftOut) {
   made("k", {"a"});
   const JobRecord anns = submit(with_callback("ann", "k", "slow:80"));
