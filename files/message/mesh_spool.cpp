@@ -18,20 +18,19 @@ void SpooledArray<T>::Unmap::operator()(T* address) const {
 }
 
 template <class T>
-Result<void> SpooledArray<T>::open(const std::filesystem::path& folder, std::size_t in_memory) {
-  auto file = open_unlinked(folder);
-  if (!file) return tl::unexpected(file.error());
-  file_ = std::move(*file);
+void SpooledArray<T>::open(const std::filesystem::path& folder, std::size_t in_memory) {
+  folder_ = folder;
   in_memory_ = in_memory;
   void* room = ::mmap(nullptr, in_memory, PROT_READ | PROT_WRITE,
                       MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room != MAP_FAILED) memory_ = {static_cast<T*>(room), Unmap{in_memory}};
-  return {};
 }
 
 template <class T>
 bool SpooledArray<T>::spill(std::size_t size) {
-  if (!write_all(file_.get(), memory_.get(), size * sizeof(T))) return false;
+  auto file = open_unlinked(folder_);
+  if (!file || !write_all(file->get(), memory_.get(), size * sizeof(T))) return false;
+  file_ = std::move(*file);
   memory_.reset();
   values_ = nullptr;
   mapped_ = 0;
@@ -45,7 +44,7 @@ bool SpooledArray<T>::append(std::span<const T> values) {
     std::copy(values.begin(), values.end(), memory_.get() + before);
     return true;
   }
-  if (memory_ && !spill(before)) return false;
+  if (!file_.is_open() && !spill(before)) return false;
   return write_all(file_.get(), values.data(), values.size_bytes());
 }
 
@@ -53,7 +52,7 @@ template <class T>
 bool SpooledArray<T>::append_zeros(std::size_t count) {
   const std::size_t before = std::exchange(size_, size_ + count);
   if (memory_ && size_ * sizeof(T) <= in_memory_) return true;
-  if (memory_ && !spill(before)) return false;
+  if (!file_.is_open() && !spill(before)) return false;
   return ::lseek(file_.get(), static_cast<off_t>(count * sizeof(T)), SEEK_CUR) >= 0;
 }
 
@@ -91,12 +90,10 @@ Result<std::unique_ptr<MeshSpool>> MeshSpool::create(const std::filesystem::path
                                                      MeshSpoolOptions options) {
   std::unique_ptr<MeshSpool> spool(new MeshSpool(folder, std::move(options)));
   const std::size_t in_memory = spool->options_.in_memory;
-  for (const auto& opened :
-       {spool->coordinates_.open(folder, in_memory), spool->triangles_.open(folder, in_memory),
-        spool->regions_.open(folder, in_memory), spool->edges_.open(folder, in_memory),
-        spool->edge_markers_.open(folder, in_memory), spool->edge_bulges_.open(folder, in_memory),
-        spool->input_points_.open(folder, in_memory)})
-    if (!opened) return tl::unexpected(opened.error());
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) return spool->failed();
+  const auto open = [&](auto&... arrays) { (arrays.open(folder, in_memory), ...); };
+  open(spool->coordinates_, spool->triangles_, spool->regions_, spool->edges_, spool->edge_markers_,
+       spool->edge_bulges_, spool->input_points_);
   return spool;
 }
 

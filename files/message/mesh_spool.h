@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Holds a mesh while it arrives, on disk unless it is small: one nameless file per array,
-// which vanishes with the process, mapped into memory once the mesh is complete. (Meshes of up to a
-// million triangles need no disk. Processor time is about the same.) `on_piece` gets the pieces as
-// they arrive, with all vertices before them; for a drawing, only the vertices need be held.
+// Holds a mesh while it arrives, on disk unless it is small: one nameless file per array that is
+// not, which vanishes with the process, mapped into memory once the mesh is complete. (Meshes of up
+// to a million triangles need no disk. Processor time is about the same; but ext4 takes long to
+// make files where many were deleted in the last seconds.) `on_piece` gets the pieces as they
+// arrive, with all vertices before them; for a drawing, only the vertices need be held.
 //
 // Errors (kUnwritableOutput): the folder is missing, not writable or full. Not thread-safe.
 #pragma once
@@ -27,7 +28,7 @@ namespace weft::files {
 template <class T>
 class SpooledArray {
  public:
-  Result<void> open(const std::filesystem::path& folder, std::size_t in_memory);
+  void open(const std::filesystem::path& folder, std::size_t in_memory);
   // Both return false with errno set on failure. Zeros take no room: they are untouched pages or a
   // hole in the file.
   bool append(std::span<const T> values);
@@ -44,10 +45,11 @@ class SpooledArray {
     std::size_t bytes = 0;
     void operator()(T* address) const;
   };
-  // Moves the first `size` values to the file.
+  // Moves the first `size` values to a file.
   bool spill(std::size_t size);
 
-  FileDescriptor file_;
+  std::filesystem::path folder_;
+  FileDescriptor file_;  // once it is needed
   std::size_t in_memory_ = 0;
   std::unique_ptr<T, Unmap> memory_;  // room for in_memory_ bytes; null: all is in the file
   std::size_t size_ = 0;
