@@ -25,4 +25,5 @@ foreach(kind EXE SHARED MODULE)
   set(CMAKE_${kind}_LINKER_FLAGS_INIT -fuse-ld=lld)
 endforeach()
 
-set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64-static -L ${WEFT_SYSROOT})
+# TEST_SLOWDOWN is for tests/support/processor_time.h.
+set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64-static -E TEST_SLOWDOWN=20 -L ${WEFT_SYSROOT})

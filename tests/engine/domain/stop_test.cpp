@@ -18,9 +18,9 @@ namespace weft {
 namespace {
 
 #ifdef WEFT_SANITIZED
-constexpr double kPromptly = 2;  // s; sanitizers slow the release of memory most
+const double kPromptly = 2;  // s; sanitizers slow the release of memory most
 #else
-constexpr double kPromptly = 0.2;  // s
+const double kPromptly = 0.2 * slowdown();  // s
 #endif
 
 Pslg random_points(int n) {

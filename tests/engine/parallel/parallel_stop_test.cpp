@@ -19,7 +19,7 @@ namespace {
 using Clock = ExecutionContext::Clock;
 
 // Of all threads together.
-constexpr double kPromptly = kSanitized ? 10 : 1;  // s
+const double kPromptly = (kSanitized ? 10 : 1) * slowdown();  // s
 
 double seconds_of_all_threads() {
   return processor_seconds(CLOCK_PROCESS_CPUTIME_ID);
