@@ -4,12 +4,13 @@
 #
 #   deploy/release.sh OUT      OUT is a folder, which is made and must be empty
 #
-# packages for Debian, the package for Python with and without programs and as sources, both for arm64, too, if
-# `deploy/install-deps.sh arm64` has installed what that takes, the images of this machine's processor as OCI
-# archives, the Helm chart, a software bill of materials (CycloneDX), the changelog, and SHA256SUMS of
-# them. The version is that of CMakeLists.txt; the maintainer of the packages for Debian is
+# packages for Debian, the package for Python with and without programs and as sources, the images as OCI archives,
+# the Helm chart, a software bill of materials (CycloneDX), the changelog, and SHA256SUMS of them. Packages, wheel,
+# bill and images are for arm64, too, if `deploy/install-deps.sh arm64` has installed what that takes: an archive then
+# has the images of both processors. The version is that of CMakeLists.txt; the maintainer of the packages for Debian is
 # WEFT_MAINTAINER, if that is set. Needs what deploy/install-deps.sh installs, and root for the images:
-# without root, or buildah or debootstrap, it says that they are left out.
+# without root, or buildah or debootstrap, it says that they are left out, and so it does with those for arm64 if the
+# kernel does not run its programs by qemu.
 #
 # Fails if the tree has changes that are not committed, because the clone would not have them. The same
 # commit on a machine with the same packages gives the same bytes, except for the images, into which apt
@@ -64,15 +65,17 @@ mv "$scratch"/packages/*.deb "$out"
 say "packages for Python"
 /usr/bin/python3 -B deploy/package/wheels.py build/portable "$out"
 
+arm64=
 tools=(mmdebstrap ld.lld qemu-aarch64-static aarch64-linux-gnu-strip)
 if (($(command -v "${tools[@]}" | wc -l) == ${#tools[@]})); then
   say "packages for arm64"
+  arm64=build/release-arm64
   deploy/arm64/sysroot.sh
   for preset in release-arm64 portable-arm64; do
     build $preset >"$scratch/build.log" 2>&1 ||
       fail "the preset $preset does not build: $(tail -n 30 "$scratch/build.log")"
   done
-  deploy/arm64/packages.sh build/release-arm64 "$scratch/arm64" >"$scratch/cpack.log" 2>&1 ||
+  deploy/arm64/packages.sh $arm64 "$scratch/arm64" >"$scratch/cpack.log" 2>&1 ||
     fail "cpack failed: $(tail "$scratch/cpack.log")"
   mv "$scratch"/arm64/*_arm64.deb "$out"
   /usr/bin/python3 -B deploy/package/wheels.py build/portable-arm64 "$out"
@@ -81,9 +84,12 @@ else
 fi
 
 say "bill of materials"
-/usr/bin/python3 -B deploy/package/bill_of_materials.py build/release "$out/weft-$version.cdx.json"
 (cd deploy && npm ci --silent --ignore-scripts --no-audit --no-fund)
-node deploy/check-bill.mjs "$out/weft-$version.cdx.json"
+for built in build/release $arm64; do
+  bill=$out/weft-$version${built#build/release}.cdx.json
+  /usr/bin/python3 -B deploy/package/bill_of_materials.py $built "$bill"
+  node deploy/check-bill.mjs "$bill"
+done
 
 say "chart"
 tar --create --sort=name --mtime="@$SOURCE_DATE_EPOCH" --owner=0 --group=0 --numeric-owner --mode=u=rwX,go=rX \
@@ -95,9 +101,18 @@ cp CHANGELOG.md "$out"
 if ((EUID == 0)) && command -v buildah >/dev/null && command -v debootstrap >/dev/null; then
   say "images"
   deploy/image.sh "$scratch/image"
+  suffixes=('')
+  if [[ $arm64 ]] && deploy/arm64/binfmt.sh; then
+    deploy/image.sh --arm64 $arm64 "$scratch/image"
+    suffixes+=(-arm64)
+  else
+    echo "the images for arm64 are left out, for want of its packages, or of a kernel that runs its programs by qemu"
+  fi
+  export STORAGE_DRIVER=vfs
+  buildah=(buildah --root "$scratch/image/images" --runroot "$scratch/image/run")
   for name in weftd weft; do
-    STORAGE_DRIVER=vfs buildah --root "$scratch/image/images" --runroot "$scratch/image/run" \
-      push --quiet "localhost/$name" "oci-archive:$out/$name-$version-image.tar:$name:$version"
+    "${buildah[@]}" manifest create "$name:$version" "${suffixes[@]/#/localhost/$name}"
+    "${buildah[@]}" manifest push --quiet --all "$name:$version" "oci-archive:$out/$name-$version-image.tar:$name:$version"
   done
 else
   echo "the images are left out, for want of root, buildah or debootstrap"

@@ -3,11 +3,14 @@
 # Builds the images of the Dockerfile by deploy/image.sh and runs them, without a Docker daemon and
 # without pulling anything. Needs root, as image.sh does.
 #
-#   tests/container.sh WEFT     WEFT is the client to mesh with, such as build/release/weft
+#   tests/container.sh WEFT [ARM64]     WEFT is the client to mesh with, such as build/release/weft
+#
+# With ARM64, a folder that the preset release-arm64 built, the images are those for arm64, which qemu runs, without
+# a browser.
 #
 # weftd: buildah starts the server, and a client outside meshes through it. Fails if the image is over
 # 120 MB or has the client, if the server runs as root, if anything but the volume was written to, if
-# the mesh is wrong, if the health check succeeds without a server, if the server does not drain, or if it
+# the mesh is wrong or not that of WEFT, if the health check succeeds without a server, if the server does not drain, or if it
 # has no console; it only says so if the console has no pages, because npm got no packages. If
 # tests/console has its packages, too, a browser works with the image's console: a mesh, a polygon drawn
 # by hand, a cancelled run, a killed server, a token. WEFT_ALL_PAGES=1 runs every test of the browser.
@@ -15,7 +18,9 @@
 # weft: meshes files of the user who runs it, with what GDAL, PROJ and METIS are for, on a server of its
 # own. Prints the sizes of both.
 set -euo pipefail
-weft=$(realpath "${1:?usage: tests/container.sh WEFT}")
+weft=$(realpath "${1:?usage: tests/container.sh WEFT [ARM64]}")
+arm64=() suffix=''
+[[ ! ${2:-} ]] || arm64=(--arm64 "$(realpath "$2")") suffix=-arm64
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 ((EUID == 0)) || {
   echo "container.sh: needs root, for debootstrap and buildah" >&2
@@ -48,7 +53,7 @@ until_true() {
   return 1
 }
 
-deploy/image.sh "$scratch" --build-arg WERROR=ON
+deploy/image.sh "${arm64[@]}" "$scratch" --build-arg WERROR=ON
 # A value of an image's configuration, a list, one item per line: config_of IMAGE KEY...
 config_of() {
   "${buildah[@]}" inspect --type image "$1" | python3 -c 'import functools, json, sys
@@ -57,12 +62,12 @@ print(*functools.reduce(dict.__getitem__, sys.argv[1:], config), sep="\n")' "${@
 }
 size_of() { du -s --apparent-size --block-size=1000000 "$1" | cut -f1; }
 
-mapfile -t healthcheck < <(config_of weftd Healthcheck Test)
+mapfile -t healthcheck < <(config_of weftd$suffix Healthcheck Test)
 unset "healthcheck[0]" # CMD
-container=$("${buildah[@]}" from --pull-never weftd)
+container=$("${buildah[@]}" from --pull-never weftd$suffix)
 root=$("${buildah[@]}" mount "$container")
 size=$(size_of "$root")
-[[ $(config_of weftd Entrypoint) == weftd ]] || fail "weftd does not start weftd"
+[[ $(config_of weftd$suffix Entrypoint) == weftd ]] || fail "weftd does not start weftd"
 client_files=$(find "$root" -xdev \( -path '*/bin/weft' -o -name 'lib*gdal*.so*' -o -name 'libproj.so*' \
   -o -name 'libmetis.so*' -o -name 'libcairo.so*' -o -name '*.ttf' \))
 [[ -z $client_files ]] || fail "the image weftd has files of the client: $client_files"
@@ -103,6 +108,8 @@ in_container "${healthcheck[@]}" >/dev/null || fail "the health check fails: ${h
 pipe=(tests/models/pipe.poly --size '0.4*hypot(x-200, y-200) + 1')
 "$weft" mesh "${pipe[@]}" -o "$scratch/pipe.vtu" --server "$address" --quiet
 "$weft" check "$scratch/pipe.vtu" --domain "${pipe[@]}"
+"$weft" mesh "${pipe[@]}" -o "$scratch/here.vtu" --quiet
+cmp "$scratch/pipe.vtu" "$scratch/here.vtu" || fail "the image makes another mesh than $weft"
 job=$("$weft" submit "${pipe[@]}" --wait --server "$address" --quiet)
 python3 - "$(sed -n 's/^console=//p' "$scratch/data/address")" "$scratch/no-pages" <<'END' || fail "the console is not served"
 import re, sys, urllib.request
@@ -127,7 +134,7 @@ written=$(find "$root" -xdev -user 990 ! -path "$root/var/lib/weft")
 
 # The browser's tests start weftd themselves: by a program that enters the image, with this machine's
 # /tmp, which has the tests' folders.
-if [[ -d tests/console/node_modules && ! -e $scratch/no-pages ]]; then
+if [[ ! $suffix && -d tests/console/node_modules && ! -e $scratch/no-pages ]]; then
   say "weftd: its console in a browser"
   mkdir "$scratch/programs"
   ln -s "$weft" "$scratch/programs/weft"
@@ -147,8 +154,8 @@ END
 fi
 
 say "weft: meshes of a GeoPackage in longitude and latitude, in parts, by user 1000"
-mapfile -t entrypoint < <(config_of weft Entrypoint)
-client=$("${buildah[@]}" from --pull-never weft)
+mapfile -t entrypoint < <(config_of weft$suffix Entrypoint)
+client=$("${buildah[@]}" from --pull-never weft$suffix)
 client_size=$(size_of "$("${buildah[@]}" mount "$client")")
 mkdir "$scratch/mounted"
 ogr2ogr "$scratch/mounted/coast.gpkg" tests/models/us-east-coast.geojson
@@ -165,5 +172,5 @@ in_client mesh coast.gpkg "${coast[@]}" -o coast.vtu --draw coast.png --quiet 2>
 in_client mesh coast.gpkg "${coast[@]}" -o parts.vtu --parts 2 --quiet
 [[ $(stat -c %u "$scratch/mounted/coast.vtu") == 1000 ]] || fail "the mesh is not user 1000's"
 
-echo "images: weftd $size MB, weft $client_size MB"
+echo "images$suffix: weftd $size MB, weft $client_size MB"
 ((size <= 120)) || fail "the image weftd has $size MB, more than 120"

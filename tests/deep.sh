@@ -3,7 +3,7 @@
 # What tests/run.sh leaves out: every test under AddressSanitizer with UndefinedBehaviorSanitizer, and
 # every test of threads under ThreadSanitizer; everything compiled by g++, too, with warnings as errors;
 # fuzzing; the container; the packages; solvers that take meshes; the documents as they run on other processors;
-# packages and tests of arm64 under qemu; servers under load and under attack for longer. Prints each step with
+# packages, image and tests of arm64 under qemu; servers under load and under attack for longer. Prints each step with
 # its seconds and fails when any failed.
 #
 #   tests/deep.sh [STEP...]     STEP: asan tsan gcc fuzz container packages solvers processors arm64 soak;
@@ -77,9 +77,15 @@ deep_processors() {
 deep_arm64() {
   step "install arm64's tools" deploy/install-deps.sh arm64 &&
     step "sysroot, arm64" deploy/arm64/sysroot.sh &&
-    step "build, arm64" build release-arm64 &&
+    step "build, arm64" build release-arm64 --target tests/engine/all tests/checker/all \
+      weft weftd weft_c weft_library weft_pages weft_python &&
     step "build, portable, arm64" build portable-arm64 || return
   step "packages, arm64" tests/arm64.sh build/release build/release-arm64 build/portable-arm64
+  if ((EUID == 0)) && deploy/arm64/binfmt.sh; then
+    step "container, arm64" tests/container.sh build/release/weft build/release-arm64
+  else
+    echo "the container of arm64: not built, for want of root, or of a kernel that runs programs of arm64 by qemu"
+  fi
   local folder
   for folder in engine checker; do
     step "tests, arm64, $folder" ctest --test-dir build/release-arm64/tests/$folder -j "$(nproc)" \
