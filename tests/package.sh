@@ -93,14 +93,7 @@ serves() { [[ $(inside weft health --server 127.0.0.1:7421 2>/dev/null) == servi
 shows_the_journal() { inside journalctl --no-pager --unit weftd --lines 20; }
 # Of all that it shows: a grep that ends early would end journalctl by SIGPIPE.
 journal_says() { grep -q "$1" <<<"$(shows_the_journal)"; }
-# Runs a command in the folder $1 as if it were the whole machine.
-inside_folder() {
-  # shellcheck disable=SC2016
-  unshare --mount --pid --fork sh -c 'mount -t proc proc "$0/proc" && exec chroot "$0" "$@"' "$1" \
-    env -i PATH=/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 \
-    DEBIAN_FRONTEND=noninteractive "${@:2}"
-}
-before_boot() { inside_folder "$root" "$@"; }
+before_boot() { tests/inside.sh "$root" "$@"; }
 
 say "packages, by cpack"
 (cd "$scratch" && cpack --config "$build/CPackConfig.cmake" -B "$scratch/packages") \
@@ -125,7 +118,7 @@ mesh=(/srv/pipe.poly --size '0.4*hypot(x-200, y-200) + 1')
 say "the wheel's programs, beside nothing but a bare Debian 12"
 other=$scratch/other
 cp -a "$root" "$other"
-in_other() { inside_folder "$other" "$@"; }
+in_other() { tests/inside.sh "$other" "$@"; }
 /usr/bin/python3 -m pip install --quiet --root-user-action ignore --no-index --no-deps \
   --target "$other/opt" "$scratch"/wheels/*manylinux*.whl
 in_other /opt/weft/carried/bin/weft mesh "${mesh[@]}" -o /srv/bare.vtu --draw /srv/bare.png --quiet
