@@ -2,7 +2,6 @@
 #include "server/http/domain_file.h"
 
 #include <google/protobuf/io/coded_stream.h>
-#include <sys/mman.h>
 
 #include <algorithm>
 #include <functional>
@@ -22,9 +21,6 @@ namespace {
 
 // In degrees and in metres.
 constexpr std::uint64_t kBytesOfProjectedPoint = 2 * sizeof(files::Point);
-// Of a file that is kept in memory while it is read, which it has been already: ext4 takes long to
-// make files where many were deleted in the last seconds.
-constexpr std::size_t kSmallFile = std::size_t{1} << 20;
 // A value takes two bytes of a file at least, and is there as a double, and twice as a float.
 constexpr std::uint64_t kBytesPerGridByte = 12;
 
@@ -41,12 +37,10 @@ struct Opened {
 
 Outcome<Opened> open_file(std::string bytes, const std::string& name,
                           const std::filesystem::path& folder) {
-  auto nameless = bytes.size() <= kSmallFile
-                      ? files::FileDescriptor(::memfd_create("weft", MFD_CLOEXEC))
-                      : files::open_unlinked(folder).value_or(files::FileDescriptor());
-  if (!nameless.is_open() || !files::write_all(nameless.get(), bytes.data(), bytes.size()))
+  auto nameless = files::open_unlinked(folder);
+  if (!nameless || !files::write_all(nameless->get(), bytes.data(), bytes.size()))
     return tl::unexpected(no_room());
-  Opened opened{.file = std::move(nameless)};
+  Opened opened{.file = std::move(*nameless)};
   opened.path = "/proc/self/fd/" + std::to_string(opened.file.get());
   opened.texts = FileTexts(opened.path.string(), name);
   return opened;
