@@ -19,6 +19,7 @@ std::string fault(std::string_view body, std::string_view type = kType) {
 TEST(Form, IsWhatItsContentTypeSays) {
   EXPECT_TRUE(is_form("multipart/form-data; boundary=x"));
   EXPECT_TRUE(is_form("Multipart/Form-Data;boundary=x"));
+  EXPECT_TRUE(is_form("multipart/form-data ; boundary=x"));
   for (const char* type : {"", "multipart/form-dat", "multipart/mixed; boundary=x", "text/csv"})
     EXPECT_FALSE(is_form(type)) << type;
 }
@@ -69,6 +70,8 @@ TEST(Form, WithAFaultSaysWhatIsWrong) {
   EXPECT_EQ(fault("----x\r\nContent-Disposition: form-data; filename=b\r\n\r\n\r\n----x--"),
             "a part of the form has no name");
   EXPECT_EQ(fault("----x\r\nContent-Type: text/csv\r\n----x--"), "a part of the form has no body");
+  EXPECT_EQ(fault("----x\r\n----x--"), "a part of the form has no body");
+  EXPECT_EQ(fault("----x\r\n" + part + "----x--"), "a part of the form has no body");
   std::string many;
   for (int i = 0; i < 101; ++i) many += part;
   EXPECT_EQ(fault(many + "----x--"), "the form has more than 100 parts");

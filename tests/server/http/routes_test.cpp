@@ -292,6 +292,37 @@ TEST(HttpMesh, IsReadToItsEndWhileTheServerDrains) {
   EXPECT_GT(rest.size(), 40u << 19);
 }
 
+// A part of a form.
+std::string part(const std::string& disposition, const std::string& body,
+                 const std::string& header = "") {
+  return "--x\r\nContent-Disposition: form-data; " + disposition + "\r\n" + header + "\r\n" + body +
+         "\r\n";
+}
+
+TEST(HttpForms, AreOneDomainWithHarmlessTexts) {
+  ConsoleServer server(stream, with_http());
+  const auto answer = [&](const std::string& parts, const std::string& path = "/v1/lint") {
+    return send(server, "POST", path, parts + "--x--",
+                {{"Content-Type", "multipart/form-data; boundary=x"}});
+  };
+  const std::string corners =
+      part("name=domain; filename=\"../a b\"", "0,0\n1,0\n0,1\n", "Content-Type: text/csv\r\n");
+  const WebResponse found = answer(corners);
+  ASSERT_EQ(found.status, 200) << found.body;
+  EXPECT_EQ(Json::parse(found.body)["file"], "a_b");
+  EXPECT_EQ(answer(corners + part("name=snap", "0.01")).status, 200);
+  problem_in(answer(corners + corners), 400, "MALFORMED_REQUEST");
+  problem_in(answer(part("name=snap", "0.01")), 400, "MALFORMED_REQUEST");
+  problem_in(answer(corners + part("name=snap", "0.01\x01")), 400, "MALFORMED_REQUEST");
+  problem_in(answer(corners + part("name=\xff; filename=b.asc", "")), 400, "MALFORMED_REQUEST");
+  const std::string grid = part("name=h; filename=\"/tmp/h h.asc\"", "x");
+  const Json bad = problem_in(answer(corners + grid, "/v1/mesh"), 400, "UNREADABLE_FILE");
+  EXPECT_EQ(bad["detail"].get<std::string>().substr(0, 8), "h_h.asc:") << bad;
+  const std::string other =
+      part("name=domain; filename=d", "0,0\n1,0\n0,1\n", "Content-Type: application/geo+json\r\n");
+  problem_in(answer(other), 400, "UNREADABLE_FILE");  // as its type says
+}
+
 TEST(HttpStream, HasTheBytesOfTheFileThatIsMadeAtOnce) {
   ConsoleServer server(stream, with_http());
   const std::string coast =
@@ -444,6 +475,29 @@ TEST_F(HttpJobs, AreMadeSeenReadAndDeleted) {
   EXPECT_EQ(send(server_, "DELETE", path).status, 200);
   problem_in(send(server_, "GET", path), 404, "NO_SUCH_JOB");
   problem_in(send(server_, "GET", path + "/mesh"), 404, "NO_SUCH_JOB");
+}
+
+TEST_F(HttpJobs, HaveATagForEachMeshAndEachWayToWriteIt) {
+  const auto made = [&](const std::string& edge) {
+    const std::string path =
+        send(server_, "POST", "/v1/jobs?edge=" + edge, kSquare).header("location");
+    EXPECT_TRUE(
+        eventually([&] { return send(server_, "GET", path + "/mesh?format=stl").status == 200; }));
+    return path + "/mesh";
+  };
+  const std::string mesh = made("0.1");
+  const WebResponse first = send(server_, "GET", mesh);
+  std::set<std::string> tags{first.header("etag")};
+  for (const std::string& other : {mesh + "?order=2", mesh + "?order=1", made("0.2")})
+    tags.insert(send(server_, "GET", other).header("etag"));
+  tags.insert(send(server_, "GET", mesh, "", {{"Accept", "model/stl"}}).header("etag"));
+  EXPECT_EQ(tags.size(), 5u);
+  EXPECT_EQ(send(server_, "GET", mesh).header("etag"), first.header("etag"));
+  const Headers all{{"Range", "bytes=0-"}};
+  EXPECT_EQ(send(server_, "GET", mesh, "", all).status, 200);
+  const WebResponse rest = send(server_, "GET", mesh, "", {{"Range", "bytes=7-"}});
+  EXPECT_EQ(rest.status, 206);
+  EXPECT_EQ(rest.body, first.body.substr(7));
 }
 
 TEST_F(HttpJobs, SayWhatIsWrong) {

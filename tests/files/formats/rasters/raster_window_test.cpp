@@ -87,6 +87,25 @@ TEST_F(AsciiField, IsTakenForDegreesOnlyIfItMeetsTheBoxSo) {
   EXPECT_FALSE(read_field_raster(write(2, 2, 284, 380, 1, "1 2 3 4"), "", {-76, 380, -74, 382}));
 }
 
+// Straight between few points only where the line through the degrees is straight.
+TEST_F(AsciiField, IsProjectedWhereItsDegreesBend) {
+  std::string values;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 400; ++column) values += std::to_string(0.1 * column) + " ";
+  const auto path = write(400, 3, -0.05, -0.05, 0.1, values);
+  const auto degrees = [](double x) { return 20 + 15 * std::sin(x); };
+  const auto field = read_ascii_field(
+      path, {0, 0, 30, 0.1},
+      [&](Point p) {
+        return Point{degrees(p.x), p.y};
+      },
+      kMaxFieldValues);
+  ASSERT_TRUE(field) << field.error().message;
+  ASSERT_GT(field->columns, 100u);
+  for (std::uint32_t i = 0; i < field->columns; ++i)
+    EXPECT_NEAR(field->values[i], degrees(field->x + i * field->dx), 0.2) << i;
+}
+
 TEST_F(AsciiField, IsNamedBeforeTheColonOfABand) {
   const auto path = write(1, 1, 0, 0, 1, "3");
   const auto odd = folder_.write("a:b.nc", "");
