@@ -83,7 +83,7 @@ finish() {
   done
   for name in "${broken[@]}"; do
     printf '\n--- %s, which failed ---\n' "$name"
-    if [[ $name == tests* ]]; then
+    if [[ $name == tests* ]] && grep -q '% tests passed' "$logs/$name.log"; then
       failed_tests "$logs/$name.log"
     else
       tail -n 60 "$logs/$name.log"
