@@ -5,17 +5,18 @@
 // the request, retries, the stream and where it is kept.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+
+#include "client/call/retry.h"
 
 namespace weft::client {
 
 struct ConnectOptions {
-  // As gRPC takes it ("host:port", "unix:/path"); empty: a private server, which uses only
-  // `one_mesh`.
+  // As gRPC takes it ("host:port", "unix:/path"); empty: a private server, which uses nothing else.
   std::string server{};
-  // Whether there is only one mesh to make: a private server then gives it all of its memory.
-  bool one_mesh = false;
 
   // Encryption. With any of `tls`, `tls_ca`, `tls_cert` and `tls_server_name` the connection is
   // encrypted and the server's certificate verified.
@@ -28,6 +29,14 @@ struct ConnectOptions {
 
   // Send the token even if others may read it: unencrypted, to another machine.
   bool insecure = false;
+};
+
+// What each command takes that calls a server.
+struct CallOptions {
+  ConnectOptions server{};
+  std::optional<double>
+      timeout_seconds{};  // of all that the command waits for, if it says no other
+  std::uint32_t retries = RetryOptions{}.attempts;
 };
 
 }  // namespace weft::client

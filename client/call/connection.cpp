@@ -122,9 +122,8 @@ Result<std::shared_ptr<grpc::Channel>> open_channel(const ConnectOptions& option
       options.server, *encryption, arguments, std::move(interceptors));
 }
 
-}  // namespace
-
-Result<Connection> connect(const ConnectOptions& options, std::stop_token stop) {
+Result<Connection> connect_to(const ConnectOptions& options,
+                              const PrivateServerOptions& private_options, std::stop_token stop) {
   Connection connection;
   connection.address = options.server;
   if (!options.server.empty()) {
@@ -133,8 +132,6 @@ Result<Connection> connect(const ConnectOptions& options, std::stop_token stop) 
     connection.channel = std::move(*channel);
     return connection;
   }
-  PrivateServerOptions private_options;
-  if (options.one_mesh) private_options.jobs = 1;
   // gRPC starts while the server does.
   auto server = PrivateServer::start(
       private_options, std::move(stop), [&connection](const std::string& address) {
@@ -144,6 +141,16 @@ Result<Connection> connect(const ConnectOptions& options, std::stop_token stop) 
   if (!server) return tl::unexpected(server.error());
   connection.server = std::move(*server);
   return connection;
+}
+
+}  // namespace
+
+Result<Connection> connect(const ConnectOptions& options, std::stop_token stop) {
+  return connect_to(options, {}, std::move(stop));
+}
+
+Result<Connection> connect_for_mesh(const ConnectOptions& options, std::stop_token stop) {
+  return connect_to(options, {.jobs = 1}, std::move(stop));
 }
 
 }  // namespace weft::client

@@ -29,5 +29,7 @@ struct Connection {
 
 // Does not wait for a named server: the first call finds out whether it is there.
 Result<Connection> connect(const ConnectOptions& options, std::stop_token stop);
+// The same for a single mesh, to which a private server gives all of its memory.
+Result<Connection> connect_for_mesh(const ConnectOptions& options, std::stop_token stop);
 
 }  // namespace weft::client

@@ -7,7 +7,7 @@
 #include "weft/v1/mesh_service.grpc.pb.h"
 
 namespace weft::client {
-Result<JobServer> JobServer::connect(const JobServerOptions& options, std::stop_token stop) {
+Result<JobServer> JobServer::connect(const CallOptions& options, std::stop_token stop) {
   if (options.server.server.empty())
     return fail(ExitCode::kUsage,
                 "no server is named: give --server ADDR, or WEFT_SERVER. Jobs are kept by a server "

@@ -29,15 +29,10 @@
 
 namespace weft::client {
 
-struct JobServerOptions {
-  ConnectOptions server{};                  // must be named
-  std::optional<double> timeout_seconds{};  // of all calls together
-  std::uint32_t retries = RetryOptions{}.attempts;
-};
-
 class JobServer {
  public:
-  static Result<JobServer> connect(const JobServerOptions& options, std::stop_token stop);
+  // The time-out is that of all calls together. REQUIRES: a server is named.
+  static Result<JobServer> connect(const CallOptions& options, std::stop_token stop);
   // The time-out counts from now.
   void set_limits(std::uint32_t retries, std::optional<double> timeout_seconds);
 

@@ -95,9 +95,7 @@ void add_batch_command(CLI::App& app, Chosen& chosen) {
           {"jobs", "WEFT_CLIENT_JOBS", "Meshes made at the same time", std::to_string(options.jobs),
            number("N", &BatchOptions::jobs, 1, 256)},
           options);
-  add_server_flags(batch, options.server, WithoutServer::kPrivate);
-  add_timeout(batch, options.timeout_seconds, "Maximum time per mesh, in seconds", "none");
-  add_retries(batch, options.retries);
+  add_calls(batch, options.calls, WithoutServer::kPrivate, "Maximum time per mesh, in seconds");
   batch.add_flag("--quiet,-q", options.quiet, "Report only meshes that fail")
       ->envname("WEFT_QUIET");
   batch.callback([kept, &chosen] {

@@ -13,6 +13,7 @@
 #include "client/call/projection_rows.h"
 #include "client/call/request_rows.h"
 #include "client/report/output_rows.h"
+#include "files/base/text.h"
 #include "files/base/words.h"
 #include "files/formats/domain_formats.h"
 #include "files/formats/mesh_formats.h"
@@ -98,12 +99,20 @@ void add_converted(CLI::App& command, DataPath& file) {
       [&file](const std::string& format) { file.format = format; });
 }
 
-void add_retries(CLI::App& command, std::uint32_t& retries) {
+void add_calls(CLI::App& command, CallOptions& calls, WithoutServer without,
+               const std::string& timeout_about) {
+  add_server_flags(command, calls.server, without);
+  add_timeout(command, calls.timeout_seconds, timeout_about,
+              calls.timeout_seconds ? shortest(*calls.timeout_seconds) : "none");
   add_row(command,
           {"retries", "WEFT_RETRIES",
            "Maximum retries, with growing waits, while the server is unavailable or busy",
-           std::to_string(retries), number<std::uint32_t>("N")},
-          retries);
+           std::to_string(calls.retries), number<std::uint32_t>("N")},
+          calls.retries);
+}
+
+void add_mesh_call(CLI::App& command, CallOptions& calls) {
+  add_calls(command, calls, WithoutServer::kPrivate, "Maximum time of the whole call, in seconds");
 }
 
 void add_domain_and_request_options(CLI::App& command, DataPath& input, LayerOptions& layers,

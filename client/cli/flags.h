@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "client/base/option_row.h"
+#include "client/call/connect_options.h"
 #include "client/call/mesh_request.h"
 #include "client/cli/command_groups.h"
+#include "client/cli/connect_flags.h"
 #include "client/report/mesh_output.h"
 #include "files/formats/layer_options.h"
 #include "files/geo/projection_options.h"
@@ -49,7 +51,11 @@ void add_timeout(CLI::App& command, Seconds& seconds, const std::string& about,
           seconds);
 }
 
-void add_retries(CLI::App& command, std::uint32_t& retries);
+// Which server, how long and how often. The default of the time-out is what `calls` has.
+void add_calls(CLI::App& command, CallOptions& calls, WithoutServer without,
+               const std::string& timeout_about);
+// Of a command that makes one mesh.
+void add_mesh_call(CLI::App& command, CallOptions& calls);
 
 // The file that the command reads, or `-`, and --from, its format.
 void add_input(CLI::App& command, const std::string& name, const std::string& about, DataPath& file,

@@ -62,13 +62,9 @@ CLI::App& add_command(CLI::App& app, const char* name, const char* help, const c
 
 constexpr double kShortTimeout = 30;
 
-// The default of the time-out is what `calls` has.
-void add_calls(CLI::App& command, JobServerOptions& calls,
-               const std::string& timeout_about = "Maximum time of the command, in seconds") {
-  add_server_flags(command, calls.server, WithoutServer::kRefused);
-  add_timeout(command, calls.timeout_seconds, timeout_about,
-              calls.timeout_seconds ? shortest(*calls.timeout_seconds) : "none");
-  add_retries(command, calls.retries);
+void add_job_calls(CLI::App& command, CallOptions& calls,
+                   const std::string& timeout_about = "Maximum time of the command, in seconds") {
+  add_calls(command, calls, WithoutServer::kRefused, timeout_about);
 }
 
 void look_at_variables(const CLI::App& command, SubmitOptions& options) {
@@ -103,7 +99,7 @@ void add_submit(CLI::App& app, Chosen& chosen) {
                   kSubmitExamples);
   add_domain_and_request_options(command, options->input, options->layers, options->request_options,
                                  chosen);
-  add_calls(command, options->calls);
+  add_job_calls(command, options->calls);
   command
       .add_option("--request-id", options->request_id,
                   "Name of the submission: the same name finds the same job. Default: a random one")
@@ -133,7 +129,7 @@ void add_get(CLI::App& app, Chosen& chosen) {
   options->calls.timeout_seconds = kShortTimeout;
   CLI::App& command = add_command(app, "get", "Show the state of a job", kGetExamples);
   command.add_option("ID", options->id, "Job")->required();
-  add_calls(command, options->calls);
+  add_job_calls(command, options->calls);
   add_json(command, options->json, "Print the job as one JSON object");
   bind(command, run_get, options, "interrupted", chosen);
 }
@@ -160,7 +156,7 @@ void add_list(CLI::App& app, Chosen& chosen) {
       command,
       {"limit", "WEFT_LIMIT", "Maximum jobs to list", "all", number("N", &ListOptions::limit, 1)},
       *options);
-  add_calls(command, options->calls);
+  add_job_calls(command, options->calls);
   add_json(command, options->json, "Print one JSON object, with the jobs in `jobs`");
   bind(command, run_list, options, "interrupted", chosen);
 }
@@ -169,7 +165,7 @@ void add_watch(CLI::App& app, Chosen& chosen) {
   const auto options = std::make_shared<JobOptions>();
   CLI::App& command = add_command(app, "watch", "Follow a job to its end", kWatchExamples);
   command.add_option("ID", options->id, "Job")->required();
-  add_calls(command, options->calls);
+  add_job_calls(command, options->calls);
   add_json(command, options->json, "Print the job as a JSON object, on a line for every change");
   bind(command, run_watch, options, "interrupted; the job goes on", chosen);
 }
@@ -180,7 +176,7 @@ void add_of_several(CLI::App& app, const char* name, const char* help, const cha
   options->calls.timeout_seconds = kShortTimeout;
   CLI::App& command = add_command(app, name, help, examples);
   command.add_option("ID", options->ids, "Jobs")->required();
-  add_calls(command, options->calls);
+  add_job_calls(command, options->calls);
   add_json(command, options->json, "Print one JSON object");
   bind(command, run, options, "interrupted", chosen);
 }
@@ -197,7 +193,7 @@ void add_fetch(CLI::App& app, Chosen& chosen) {
       ->type_name("INPUT");
   add_layers(command, options->layers);
   command.add_flag("--wait", options->wait, "Wait for the job to end")->envname("WEFT_WAIT");
-  add_calls(command, options->calls);
+  add_job_calls(command, options->calls);
   add_json(command, options->json, "Print one JSON object on standard output");
   add_quiet(command, options->quiet);
   bind(command, run_fetch, options, "interrupted, nothing was written", chosen);
@@ -208,7 +204,7 @@ void add_top(CLI::App& app, Chosen& chosen) {
   options->calls.timeout_seconds = 10;
   CLI::App& command =
       add_command(app, "top", "Show your jobs and the throughput, live", kTopExamples);
-  add_calls(command, options->calls, "Maximum time of an answer of the server, in seconds");
+  add_job_calls(command, options->calls, "Maximum time of an answer of the server, in seconds");
   add_row(command,
           {"interval", "WEFT_INTERVAL", "Seconds between two updates", "1",
            number("S", &TopOptions::interval_seconds, 0.1, 3600)},

@@ -4,7 +4,6 @@
 
 #include "client/call/request_rows.h"
 #include "client/cli/command_groups.h"
-#include "client/cli/connect_flags.h"
 #include "client/cli/flags.h"
 #include "client/commands/commands.h"
 #include "client/commands/job_commands.h"
@@ -138,9 +137,7 @@ Result<ExitCode> detach(const MeshOptions& options, std::stop_token stop) {
   submit.layers = options.layers;
   submit.request_options = options.request_options;
   submit.output.projection = options.output.projection;
-  submit.calls.server = options.server;
-  submit.calls.timeout_seconds = options.timeout_seconds;
-  submit.calls.retries = options.retries;
+  submit.calls = options.calls;
   submit.json = options.json;
   submit.quiet = options.quiet;
   return run_submit(submit, std::move(stop));
@@ -157,9 +154,7 @@ void add_mesh(CLI::App& app, Chosen& chosen) {
   mesh.footer(kMeshExamples);
   add_domain_and_request_options(mesh, options.input, options.layers, options.request_options,
                                  chosen);
-  add_server_flags(mesh, options.server, WithoutServer::kPrivate);
-  add_timeout(mesh, options.timeout_seconds, "Maximum time of the whole call, in seconds", "none");
-  add_retries(mesh, options.retries);
+  add_mesh_call(mesh, options.calls);
   add_output(mesh, options.output);
   mesh.add_flag("--detach", kept->detach,
                 "Submit a job, print its id and end, as `weft submit` does; needs --server");
@@ -196,9 +191,7 @@ void add_size_command(CLI::App& app, Chosen& chosen) {
            number("N", &SizeOptions::cells, 1, kMaxCells)},
           options);
   add_projection_flags(size, options.projection);
-  add_server_flags(size, options.server, WithoutServer::kPrivate);
-  add_timeout(size, options.timeout_seconds, "Maximum time of the whole call, in seconds", "none");
-  add_retries(size, options.retries);
+  add_mesh_call(size, options.calls);
   add_json(size, options.json, "Print one JSON object on standard output");
   add_quiet(size, options.quiet);
   size.callback([kept, &size, &chosen] {
@@ -332,10 +325,7 @@ void add_remesh(CLI::App& app, Chosen& chosen) {
       ->type_name("POLYGONS");
   add_layers(remesh, options.layers);
   add_request_options(remesh, options.request_options);
-  add_server_flags(remesh, options.server, WithoutServer::kPrivate);
-  add_timeout(remesh, options.timeout_seconds, "Maximum time of the whole call, in seconds",
-              "none");
-  add_retries(remesh, options.retries);
+  add_mesh_call(remesh, options.calls);
   add_output(remesh, options.output);
   add_json(remesh, options.json, "Print one JSON object on standard output");
   add_quiet(remesh, options.quiet);

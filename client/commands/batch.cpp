@@ -53,8 +53,8 @@ Result<MeshReport> make_mesh(const BatchMesh& mesh, const Connection& connection
   }
   return mesh_into(
       connection, *input, *request_options,
-      {.timeout_seconds = options.timeout_seconds,
-       .retries = options.retries,
+      {.timeout_seconds = options.calls.timeout_seconds,
+       .retries = options.calls.retries,
        .projection = input->projection.get()},
       output ? &*output : nullptr, [] {}, stop);
 }
@@ -145,7 +145,7 @@ Result<ExitCode> run_batch(const BatchOptions& options, std::stop_token stop) {
     if (!read) return tl::unexpected(read.error());
     locked = std::move(*read);
   }
-  const auto connection = connect(options.server, stop);
+  const auto connection = connect(options.calls.server, stop);
   if (!connection) return tl::unexpected(connection.error());
 
   LockFile made;

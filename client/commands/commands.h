@@ -28,9 +28,7 @@ struct MeshOptions {
   LayerOptions layers;
   MeshOutputOptions output;
   RequestOptions request_options;
-  ConnectOptions server;
-  std::optional<double> timeout_seconds;
-  std::uint32_t retries = RetryOptions{}.attempts;
+  CallOptions calls;
   bool lint = false;  // prints the domain's faults first
   bool json = false;
   bool quiet = false;
@@ -45,9 +43,7 @@ struct SizeOptions {
   std::uint32_t cells = 256;                 // along the longer side of the domain
   RequestOptions request_options;
   ProjectionOptions projection;
-  ConnectOptions server;
-  std::optional<double> timeout_seconds;
-  std::uint32_t retries = RetryOptions{}.attempts;
+  CallOptions calls;
   bool json = false;
   bool quiet = false;
 };
@@ -55,9 +51,7 @@ Result<ExitCode> run_size(const SizeOptions& options, std::stop_token stop);
 
 struct BatchOptions {
   std::filesystem::path manifest;
-  ConnectOptions server;
-  std::optional<double> timeout_seconds;  // of each mesh
-  std::uint32_t retries = RetryOptions{}.attempts;
+  CallOptions calls;               // the time-out is that of each mesh
   std::uint32_t jobs = 4;          // meshes at a time
   std::vector<QualityGate> gates;  // of all meshes, in addition to their own
   std::filesystem::path lock;      // empty: beside the manifest
@@ -115,9 +109,7 @@ struct RemeshOptions {
   LayerOptions layers;           // of these
   RequestOptions request_options;
   MeshOutputOptions output;
-  ConnectOptions server;
-  std::optional<double> timeout_seconds;
-  std::uint32_t retries = RetryOptions{}.attempts;
+  CallOptions calls;
   bool json = false;
   bool quiet = false;
 };

@@ -27,7 +27,7 @@ struct SubmitOptions {
   std::string request_id;    // empty: a random one
   std::string notify;        // empty: what the server has for the client
   bool wait = false;
-  JobServerOptions calls;
+  CallOptions calls;
   bool json = false;
   bool quiet = false;
 };
@@ -39,7 +39,7 @@ struct FetchOptions {
   std::optional<std::filesystem::path> domain;  // that was submitted
   LayerOptions layers;                          // of the domain
   bool wait = false;
-  JobServerOptions calls;
+  CallOptions calls;
   bool json = false;
   bool quiet = false;
 };
@@ -47,7 +47,7 @@ Result<ExitCode> run_fetch(const FetchOptions& options, std::stop_token stop);
 
 struct JobOptions {
   std::string id;
-  JobServerOptions calls;
+  CallOptions calls;
   bool json = false;
 };
 Result<ExitCode> run_get(const JobOptions& options, std::stop_token stop);
@@ -55,7 +55,7 @@ Result<ExitCode> run_watch(const JobOptions& options, std::stop_token stop);
 
 struct JobsOptions {
   std::vector<std::string> ids;
-  JobServerOptions calls;
+  CallOptions calls;
   bool json = false;
 };
 // Tries all; the exit code is that of the first failure.
@@ -65,7 +65,7 @@ Result<ExitCode> run_delete(const JobsOptions& options, std::stop_token stop);
 struct ListOptions {
   std::vector<v1::JobState> states;    // empty: all
   std::optional<std::uint64_t> limit;  // DEFAULT: all
-  JobServerOptions calls;
+  CallOptions calls;
   bool json = false;
 };
 Result<ExitCode> run_list(const ListOptions& options, std::stop_token stop);
@@ -73,7 +73,7 @@ Result<ExitCode> run_list(const ListOptions& options, std::stop_token stop);
 struct TopOptions {
   double interval_seconds = 1;
   bool once = false;
-  JobServerOptions calls;  // the time-out is that of each poll of the server
+  CallOptions calls;  // the time-out is that of each poll of the server
 };
 Result<ExitCode> run_top(const TopOptions& options, std::stop_token stop);
 

@@ -79,23 +79,12 @@ Result<ExitCode> run_mesh(const MeshOptions& options, std::stop_token stop) {
     }
   times.read = MeshTimes::Clock::now();
 
-  ConnectOptions one_mesh = options.server;
-  one_mesh.one_mesh = true;
-  const auto connection = connect(one_mesh, stop);
+  const auto connection = connect_for_mesh(options.calls.server, stop);
   if (!connection) return tl::unexpected(connection.error());
   times.connected = MeshTimes::Clock::now();
 
   ProgressBar progress(stderr, options.quiet ? ProgressStyle::kNone : progress_style_of(stderr));
-  const MeshCallOptions call{
-      .timeout_seconds = options.timeout_seconds,
-      .retries = options.retries,
-      .on_progress = [&progress](const v1::Progress& p) { progress.update(p); },
-      .on_away =
-          [&progress](const std::string& what) {
-            progress.clear();
-            std::fprintf(stderr, "weft: %s\n", what.c_str());
-          },
-      .projection = input->projection.get()};
+  const MeshCallOptions call = shown_call(options.calls, progress, input->projection.get());
   request_options->asked.set_want_quadtree(options.output.draw_quadtree);
   const auto received = [&] {
     times.received = MeshTimes::Clock::now();

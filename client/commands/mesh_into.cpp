@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/commands/mesh_into.h"
 
+#include <cstdio>
 #include <filesystem>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -10,6 +12,19 @@
 #include "files/message/mesh_spool.h"
 
 namespace weft::client {
+
+MeshCallOptions shown_call(const CallOptions& calls, ProgressBar& progress,
+                           const DomainProjection* projection) {
+  return {.timeout_seconds = calls.timeout_seconds,
+          .retries = calls.retries,
+          .on_progress = [&progress](const v1::Progress& p) { progress.update(p); },
+          .on_away =
+              [&progress](const std::string& what) {
+                progress.clear();
+                std::fprintf(stderr, "weft: %s\n", what.c_str());
+              },
+          .projection = projection};
+}
 
 Result<MeshReport> mesh_into(const Connection& connection, const InputDomain& input,
                              const RequestOptions& request_options, const MeshCallOptions& call,

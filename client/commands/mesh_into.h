@@ -10,9 +10,14 @@
 #include "client/call/mesh_report.h"
 #include "client/commands/input_domain.h"
 #include "client/report/mesh_output.h"
+#include "client/report/progress_bar.h"
 #include "files/base/error.h"
 
 namespace weft::client {
+
+// A call that shows its progress, and says on standard error that the server is away.
+MeshCallOptions shown_call(const CallOptions& calls, ProgressBar& progress,
+                           const DomainProjection* projection);
 
 // Requests a mesh of the domain and writes `output`; null: nothing is written. `received` is called
 // before anything is written. The report has all warnings: about the files of the request, its

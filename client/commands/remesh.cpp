@@ -10,6 +10,7 @@
 #include "client/call/mesh_call.h"
 #include "client/commands/commands.h"
 #include "client/commands/input_domain.h"
+#include "client/commands/mesh_into.h"
 #include "client/report/marker_warnings.h"
 #include "client/report/mesh_text.h"
 #include "client/report/progress_bar.h"
@@ -58,19 +59,13 @@ Result<PatchedMesh> made_anew(const RemeshOptions& options, const Mesh& mesh,
                               const std::stop_token& stop) {
   const auto asked = ask_for(options, patch);
   if (!asked) return tl::unexpected(asked.error());
-  ConnectOptions one_mesh = options.server;
-  one_mesh.one_mesh = true;
-  const auto connection = connect(one_mesh, stop);
+  const auto connection = connect_for_mesh(options.calls.server, stop);
   if (!connection) return tl::unexpected(connection.error());
   std::error_code ignored;
   auto spool = MeshSpool::create(std::filesystem::temp_directory_path(ignored));
   if (!spool) return tl::unexpected(spool.error());
   ProgressBar progress(stderr, options.quiet ? ProgressStyle::kNone : progress_style_of(stderr));
-  const MeshCallOptions call{
-      .timeout_seconds = options.timeout_seconds,
-      .retries = options.retries,
-      .on_progress = [&progress](const v1::Progress& p) { progress.update(p); },
-      .projection = asked->input.projection.get()};
+  const MeshCallOptions call = shown_call(options.calls, progress, asked->input.projection.get());
   auto made =
       call_generate_mesh(*connection, asked->input.domain, asked->options, call, **spool, stop);
   progress.clear();

@@ -86,7 +86,7 @@ std::string size_text(const std::vector<double>& lengths, const MeshReport& repo
           " triangles\n";
   if (report.projection) text += projection_text(*report.projection);
   for (const std::string& warning : report.warnings) text += "WARNING: " + warning + "\n";
-  return text + warnings_text(report.summary);
+  return text;
 }
 
 Json size_json(const Raster& grid, const std::vector<double>& lengths, const MeshReport& report) {
@@ -102,10 +102,7 @@ Json size_json(const Raster& grid, const std::vector<double>& lengths, const Mes
     json["largest_edge"] = lengths.back();
   }
   if (report.projection) json["projection"] = projection_json(*report.projection);
-  std::vector<std::string> warnings = report.warnings;
-  for (const v1::SizeWarning& warning : report.summary.size_warnings())
-    warnings.push_back(warning.message());
-  if (!warnings.empty()) json["warnings"] = warnings;
+  if (!report.warnings.empty()) json["warnings"] = report.warnings;
   return json;
 }
 
@@ -129,16 +126,10 @@ Result<ExitCode> run_size(const SizeOptions& options, std::stop_token stop) {
   Raster grid = cells_over(input->domain, options.cells);
   ask_for_size_at(grid, request->asked);
 
-  ConnectOptions one_mesh = options.server;
-  one_mesh.one_mesh = true;
-  const auto connection = connect(one_mesh, stop);
+  const auto connection = connect_for_mesh(options.calls.server, stop);
   if (!connection) return tl::unexpected(connection.error());
   ProgressBar progress(stderr, options.quiet ? ProgressStyle::kNone : progress_style_of(stderr));
-  const MeshCallOptions call{
-      .timeout_seconds = options.timeout_seconds,
-      .retries = options.retries,
-      .on_progress = [&progress](const v1::Progress& p) { progress.update(p); },
-      .projection = input->projection.get()};
+  const MeshCallOptions call = shown_call(options.calls, progress, input->projection.get());
   const auto report = mesh_into(
       *connection, *input, *request, call, nullptr, [] {}, stop);
   if (!report) return tl::unexpected(report.error());
