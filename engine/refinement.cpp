@@ -19,7 +19,7 @@
 #include "engine/refine/mapped_area.h"
 #include "engine/refine/storage/mesh_store.h"
 #include "engine/size/lattice/lattice_map.h"
-#include "engine/size/sampled_bounds.h"
+#include "engine/size/sampled_size.h"
 #include "engine/size/size_warnings.h"
 #include "engine/size/vanishing_size.h"
 
@@ -85,7 +85,6 @@ class Refinement {
   }
 
  private:
-  static constexpr int kGrid = 256;  // cells each way
   static constexpr std::uint64_t kUncountable = 1'000'000'000'000'000'000;
 
   // The lengths of edges at markers, for the line on which layers end.
@@ -195,22 +194,23 @@ class Refinement {
 
   // Instead of a mesh.
   std::optional<Error> sample() {
+    // What layers take of the domain is a part of it.
+    const Domain& domain = ready_.layers ? ready_.layers->domain : ready_.ground;
     const std::vector<Point>& points = ready_.request.sample_points;
     summary_.peak_bytes = ready_.size_bytes + (ready_.map ? ready_.map->bytes() : 0) +
-                          ready_.domain.bytes() +
-                          bytes_to_sample(sampled_domain(), points.size() + kGrid * kGrid);
+                          ready_.domain.bytes() + bytes_to_sample(domain, points.size());
     if (auto error = context_.need_bytes(summary_.peak_bytes, "the sampled size")) return error;
-    auto bounds = sampled_at(points);
-    if (!bounds) return bounds.error();
-    summary_.sampled_bounds = std::move(*bounds);
-    auto integral = integral_over_grid();
-    if (!integral) return integral.error();
+    auto sampled =
+        context_.compute([&] { return sample_size(ready_.size, domain, points, context_); });
+    if (!sampled) return sampled.error();
+    if (sampled->bad) return bad_size_error({*sampled->bad, &ready_.size});
     // Where a size varies, rows of lattices end.
     constexpr double kIfItVaries = 1.12;
-    const double by_bounds = triangles_per_bound(quality_.lattice) * *integral;
+    const double by_bounds = triangles_per_bound(quality_.lattice) * sampled->per_bound;
     summary_.expected_triangles =
         std::min(std::max(expected_, by_bounds) * (ready_.map ? kIfItVaries : 1),
                  static_cast<double>(kUncountable));
+    summary_.sampled_bounds = std::move(sampled->bounds);
     summary_.size_seconds = clock_.lap();
     summary_.engine_seconds = summary_.triangulate_seconds + summary_.size_seconds;
     summary_.size_warnings = size_warnings(ready_.request.size, summary_.box, least_sampled());
@@ -219,42 +219,11 @@ class Refinement {
     return std::nullopt;
   }
 
-  // Of which layers are a part.
-  const Domain& sampled_domain() const {
-    return ready_.layers ? ready_.layers->domain : ready_.ground;
-  }
-
-  Result<std::vector<double>> sampled_at(const std::vector<Point>& points) const {
-    auto bounds = context_.compute(
-        [&] { return sampled_bounds(ready_.size, sampled_domain(), points, context_); });
-    if (!bounds) return bounds;
-    const auto bad = std::find(bounds->begin(), bounds->end(), 0.0);
-    if (bad == bounds->end()) return bounds;
-    const Point at = points[static_cast<std::size_t>(bad - bounds->begin())];
-    return tl::unexpected(bad_size_error({at, &ready_.size}));
-  }
-
-  // Of 1 over the bound, which a size and a region make together.
-  Result<double> integral_over_grid() const {
-    const Box& box = summary_.box;
-    const double dx = box.width() / kGrid, dy = box.height() / kGrid;
-    std::vector<Point> middles;
-    for (int row = 0; row < kGrid; ++row)
-      for (int column = 0; column < kGrid; ++column)
-        middles.push_back({box.min_x + (column + 0.5) * dx, box.min_y + (row + 0.5) * dy});
-    const auto bounds = sampled_at(middles);
-    if (!bounds) return tl::unexpected(bounds.error());
-    double sum = 0;
-    for (const double bound : *bounds)
-      if (bound > 0) sum += 1 / bound;
-    return sum * dx * dy;
-  }
-
-  // 0 if none has a bound.
+  // Above 0; 0 if there is none.
   double least_sampled() const {
     double least = std::numeric_limits<double>::infinity();
     for (const double bound : summary_.sampled_bounds)
-      if (bound < least) least = bound;
+      if (bound > 0 && bound < least) least = bound;
     return std::isinf(least) ? 0 : least;
   }
 

@@ -60,6 +60,9 @@ test("a heat map has the lengths of edges in the domain, and what is beside it a
   expect(pixel(2)).toEqual(pixel(1)); // its middle is outside, but not all of it
   expect(pixel(3)).toEqual([0, 0, 0, 0]);
   expect(heatMapOf(grid, [2, 4, Infinity, NaN], Measure.AREA)).toMatchObject({ low: 2, high: 4 });
+  const fallen = heatMapOf(grid, [0, 2, 4, 2], Measure.AREA)!; // the size alone is none at a place
+  expect(fallen).toMatchObject({ low: 2, high: 4 });
+  expect([...fallen.pixels.data.slice(0, 4)]).toEqual([...fallen.pixels.data.slice(4, 8)]);
   for (const even of [[2, 2, NaN, NaN], [Infinity, Infinity, NaN, NaN], [NaN, NaN, NaN, NaN]])
     expect(heatMapOf(grid, even, Measure.AREA)).toBeUndefined();
 });

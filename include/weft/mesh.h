@@ -203,7 +203,7 @@ struct Summary {
 
   // Only with MeshRequest::sample_points. At each, the bound on the area of a triangle with its
   // centroid there: the least of the size and the region's. Infinity for none, NaN outside of the
-  // domain.
+  // domain, 0 at a place where the size alone is no size.
   std::vector<double> sampled_bounds;
   double expected_triangles = 0;  // of a mesh, about
 

@@ -75,3 +75,27 @@ def test_what_is_no_size_is_refused(tmp_path: pathlib.Path, words: list[str], co
     assert (ended.returncode, ended.stdout) == (code, "")
     assert said in ended.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+def test_each_warning_comes_once(tmp_path: pathlib.Path) -> None:
+    """Of a line outside, which the domain's reader sees, and of a size with no effect, which the engine does."""
+    domain = {"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates": [
+            [[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]]]}},
+        {"type": "Feature", "properties": {}, "geometry": {"type": "LineString", "coordinates": [[5, 5], [6, 6]]}},
+    ]}
+    (tmp_path / "line.geojson").write_text(json.dumps(domain))
+    words = ["size", "line.geojson", "--edge", "1e7"]
+    text = weft(tmp_path, *words)
+    warnings = re.findall(r"WARNING: (.*)", text.stdout + text.stderr)
+    assert len(warnings) == len(set(warnings)) == 2
+    assert sorted(told(tmp_path, *words[1:])["warnings"]) == sorted(warnings)
+
+
+def test_a_size_that_grows_from_a_place_is_none_there(tmp_path: pathlib.Path) -> None:
+    bounds = ["--edge", "0.2*sqrt(hypot(x-1, y-1))"]
+    (tmp_path / "square.poly").write_text("4 2 0 0\n1 0 0\n2 2 0\n3 2 2\n4 0 2\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n0\n")
+    size = told(tmp_path, "square.poly", *bounds, "--cells", 3)
+    mesh = json.loads(weft(tmp_path, "mesh", "square.poly", *bounds, "-o", "square.vtu", "--json").stdout)
+    assert size["least_edge"] == 0 and size["cells"] == 9
+    assert mesh["triangles"] > 0

@@ -99,7 +99,7 @@ TEST(WholeMesh, IsNoneIfTheRunEnds) {
   EXPECT_EQ(mesh({}).error().code, ErrorCode::kTooFewPoints);
 }
 
-TEST(SampledSize, IsToldInsteadOfAMesh) {
+TEST(SizeRequest, IsToldInsteadOfAMesh) {
   MeshRequest request = two_squares(0.001);
   const auto made = mesh(request);
   ASSERT_TRUE(made);
@@ -117,7 +117,7 @@ TEST(SampledSize, IsToldInsteadOfAMesh) {
   EXPECT_LT(estimate(request).bytes, estimate(two_squares(1e-6)).bytes / 4);
 }
 
-TEST(SampledSize, IsRefusedWhereItIsNone) {
+TEST(SizeRequest, IsRefusedWhereItIsNone) {
   MeshRequest request = two_squares(1);
   request.size = SizeSpec("x - 1");
   request.sample_points = {{1.5, 0.5}, {0.5, 0.25}};
@@ -127,7 +127,21 @@ TEST(SampledSize, IsRefusedWhereItIsNone) {
   EXPECT_EQ(told.error().at, (Point{0.5, 0.25}));
 }
 
-TEST(SampledSize, IsThatOfFewFinitePoints) {
+TEST(SizeRequest, IsThatOfAMeshWhoseSizeIsNoneAtAPlace) {
+  MeshRequest request = two_squares(1);
+  request.size = SizeSpec("0.01 * hypot(x-0.5, y-0.5)");
+  const auto made = mesh(request);
+  ASSERT_TRUE(made) << made.error().message;
+  request.sample_points = {{0.5, 0.5}, {1.5, 0.5}};
+  const auto told = mesh(request);
+  ASSERT_TRUE(told) << told.error().message;
+  EXPECT_EQ(told->summary.sampled_bounds, (std::vector<double>{0, 0.01}));
+  const double expected = told->summary.expected_triangles;
+  EXPECT_GT(expected, 0.5 * static_cast<double>(made->triangles.size()));
+  EXPECT_LT(expected, 1.2 * static_cast<double>(made->triangles.size()));
+}
+
+TEST(SizeRequest, IsThatOfFewFinitePoints) {
   MeshRequest request = two_squares(1);
   request.sample_points = {{0, 0}, {1, NAN}};
   ASSERT_TRUE(validate(request));

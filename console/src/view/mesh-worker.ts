@@ -50,8 +50,8 @@ async function room(): Promise<void> {
 const callOptions = (token: string) => ({ headers: token ? { authorization: `Bearer ${token}` } : undefined });
 const transport = createGrpcWebTransport({ baseUrl: self.location.origin });
 
-// Has the bounds of as many of these chunks as a request may ask for; NaN if the server does not tell.
-async function ask(chunks: MeshChunk[]): Promise<void> {
+// Has the bounds of as many of these chunks as a request may ask for. Returns whether the server tells.
+async function ask(chunks: MeshChunk[]): Promise<boolean> {
   const { request, token } = started!;
   const { coordinates } = store;
   const points: number[] = [];
@@ -65,22 +65,29 @@ async function ask(chunks: MeshChunk[]): Promise<void> {
   }
   const own = fromBinary(GenerateMeshRequestSchema, request as Uint8Array);
   const told = await sampleSize(createClient(MeshService, transport), own, points, callOptions(token)).catch(() => undefined);
+  if (!told) return false;
   let first = 0;
   for (const { index, triangles } of asked) {
     const count = triangles.length / 3;
-    bounds.set(index, told ? told.bounds.slice(first, first + count) : new Float32Array(count).fill(NaN));
+    bounds.set(index, told.bounds.slice(first, first + count));
     first += count;
   }
+  return true;
 }
+
+// NaN where they are not known.
+const boundsOf = ({ index, triangles }: MeshChunk) =>
+  bounds.get(index) ?? new Float32Array(triangles.length / 3).fill(NaN);
 
 async function sayPicturesAgain(over: boolean): Promise<void> {
   const own = wish;
   const chunks = [...store.chunks()];
+  let told = over;
   for (const [i, chunk] of chunks.entries()) {
     await room();
-    if (over && !bounds.has(chunk.index)) await ask(chunks.slice(i));
+    if (told && !bounds.has(chunk.index)) told = await ask(chunks.slice(i));
     if (own !== wish) return; // they are wanted otherwise now
-    const picture = pictureOf(chunk, store.coordinates, slots, () => {}, over ? bounds.get(chunk.index) : undefined);
+    const picture = pictureOf(chunk, store.coordinates, slots, () => {}, over ? boundsOf(chunk) : undefined);
     if (picture) sayPicture({ type: "again", wish, picture });
   }
 }

@@ -11,7 +11,8 @@ import type { Box } from "./picture";
 export const mostPoints = 262_144;
 
 export interface SampledSize {
-  bounds: number[]; // on areas, in squared units; Infinity for none, NaN outside of the domain
+  // On areas, in squared units; Infinity for none, NaN outside of the domain, 0 where the size alone is none.
+  bounds: number[];
   triangles: number; // that the mesh will have, about
 }
 
@@ -71,7 +72,7 @@ export interface HeatMap {
 // The lengths of edges or the areas at the middles of the cells. Undefined if they are the same everywhere.
 export function heatMapOf(grid: Grid, bounds: number[], measure: Measure): HeatMap | undefined {
   const values = measure === Measure.EDGE ? bounds.map((area) => Math.sqrt((4 / Math.sqrt(3)) * area)) : bounds;
-  const known = values.filter((value) => value < Infinity);
+  const known = values.filter((value) => value > 0 && value < Infinity);
   const low = known.reduce((least, value) => Math.min(least, value), Infinity);
   const high = known.reduce((most, value) => Math.max(most, value), 0);
   if (!(high > low * (1 + 1e-9))) return undefined;
@@ -79,7 +80,7 @@ export function heatMapOf(grid: Grid, bounds: number[], measure: Measure): HeatM
   values.forEach((_, i) => {
     const value = near(values, grid, i);
     if (!(value < Infinity)) return;
-    pixels.data.set([...scaleColour("area", Math.log(value / low) / Math.log(high / low)), 255], 4 * i);
+    pixels.data.set([...scaleColour("area", Math.log(Math.max(value, low) / low) / Math.log(high / low)), 255], 4 * i);
   });
   return { box: grid.box, pixels, low, high };
 }

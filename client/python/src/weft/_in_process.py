@@ -26,7 +26,7 @@ class SampledSize:
     bounds: npt.NDArray[np.float64]
     """(n,): what the area of a triangle may be at most with its centroid at each point, in squared units
     of the domain: the least of the size, with its gradation, and the region's bound. Infinity for no bound,
-    NaN outside of the domain."""
+    NaN outside of the domain, 0 at a place where the size alone is none."""
     expected_triangles: int
     """Of a mesh, about."""
 
