@@ -12,6 +12,7 @@
 #include "tests/engine/domain/laws.h"
 #include "tests/engine/domain/shapes.h"
 #include "tests/support/generator.h"
+#include "tests/support/processor_time.h"
 
 namespace weft {
 namespace {
@@ -90,11 +91,15 @@ TEST(DirtyPslg, OfRandomSegmentsKeepsAllLaws) {
   }
 }
 
+// What has not ended by then will not end.
+const auto kPatience = std::chrono::duration_cast<ExecutionContext::Clock::duration>(
+    std::chrono::duration<double>(20 * slowdown()));
+
 // For segments closer to each other than the tolerance: whatever becomes of them, it ends,
 // lawfully.
 void expect_lawful(const Pslg& pslg, double ulps) {
   ExecutionContext context;
-  context.set_deadline(ExecutionContext::Clock::now() + std::chrono::seconds(20));
+  context.set_deadline(ExecutionContext::Clock::now() + kPatience);
   const Result<Domain> domain = triangulate(pslg, context);
   ASSERT_TRUE(domain) << domain.error().message;
   EXPECT_EQ(broken_law(pslg, *domain), std::nullopt);
@@ -187,7 +192,7 @@ TEST(NearMisses, OfPointsDrawnWithErrorsEndLawfully) {
       if (distance(a, b) > 0.5) add_segment(pslg, a, b, 1 + i);
     }
     ExecutionContext context;
-    context.set_deadline(ExecutionContext::Clock::now() + std::chrono::seconds(20));
+    context.set_deadline(ExecutionContext::Clock::now() + kPatience);
     const Result<Domain> domain = triangulate(pslg, context);
     ASSERT_TRUE(domain) << domain.error().message;
     EXPECT_EQ(broken_law(pslg, *domain), std::nullopt);
