@@ -31,11 +31,10 @@ struct ConnectOptions {
   bool insecure = false;
 };
 
-// What each command takes that calls a server.
+// What every command takes that calls a server.
 struct CallOptions {
   ConnectOptions server{};
-  std::optional<double>
-      timeout_seconds{};  // of all that the command waits for, if it says no other
+  std::optional<double> timeout_seconds{};  // of all calls together
   std::uint32_t retries = RetryOptions{}.attempts;
 };
 

@@ -31,7 +31,6 @@ namespace weft::client {
 
 class JobServer {
  public:
-  // The time-out is that of all calls together. REQUIRES: a server is named.
   static Result<JobServer> connect(const CallOptions& options, std::stop_token stop);
   // The time-out counts from now.
   void set_limits(std::uint32_t retries, std::optional<double> timeout_seconds);
