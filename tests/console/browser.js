@@ -75,19 +75,17 @@ export async function openPage(test, browser, url, { dark = false, expected = []
 // Waits until the text of what `selector` finds matches, and returns the match.
 export async function textMatches(page, selector, pattern, { timeout = patience } = {}) {
   try {
-    await page.waitForFunction(
+    const found = await page.waitForFunction(
       (css, source, flags) =>
-        [...document.querySelectorAll(css)].some((node) =>
-          new RegExp(source, flags).test(node.innerText)),
+        [...document.querySelectorAll(css)].map((node) => new RegExp(source, flags).exec(node.innerText)).find(Boolean),
       { timeout, polling: 50 },
       selector, pattern.source, pattern.flags,
     );
+    return await found.jsonValue(); // what matched then: the text may be another one by now
   } catch {
     const seen = await page.$$eval(selector, (nodes) => nodes.map((node) => node.innerText).join(" | "));
     throw new Error(`${selector} never matched ${pattern}: ${seen || "there is none"}`);
   }
-  const texts = await page.$$eval(selector, (nodes) => nodes.map((node) => node.innerText));
-  return texts.map((text) => pattern.exec(text)).find(Boolean);
 }
 
 // Presses the button, link or box of this name, as the accessibility tree has it.
