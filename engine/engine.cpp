@@ -57,9 +57,15 @@ class Pipeline {
       if (auto error = context_.compute([this] { return simplify_domain(); }))
         return tl::unexpected(*error);
     }
-    const Refinable ready{request_,       domain_, ground(),
-                          box_,           size(),  map_ ? &*map_ : nullptr,
-                          size_->bytes(), sides_,  layers_ ? &*layers_ : nullptr};
+    const Refinable ready{request_,
+                          domain_,
+                          ground(),
+                          box_,
+                          size(),
+                          map_ ? &*map_ : nullptr,
+                          size_->bytes() + (flat_ ? flat_->bytes() : 0),
+                          sides_,
+                          layers_ ? &*layers_ : nullptr};
     if (auto error = refine(ready, sink_, context_, clock_, summary_))
       return tl::unexpected(std::move(*error));
     return summary_;
@@ -154,9 +160,16 @@ class Pipeline {
     return std::nullopt;
   }
 
+  static std::uint64_t bytes_of(const Pslg& pslg) {
+    return pslg.points.size() * sizeof(Point) + pslg.segments.size() * sizeof(Segment);
+  }
+
   // What the size sees of a domain with arcs.
   std::optional<Error> flatten() {
     if (flat_ || domain_.curvatures.empty()) return std::nullopt;
+    const std::uint64_t bytes =
+        bytes_of(request_.pslg) + count_chords(request_.pslg) * (sizeof(Point) + sizeof(Segment));
+    if (auto error = context_.need_bytes(domain_.bytes() + bytes, "chords of arcs")) return error;
     flat_.emplace(Flat{flatten_arcs(request_.pslg), {}});
     auto domain = triangulate(flat_->pslg, context_);
     if (domain) {
@@ -227,6 +240,8 @@ class Pipeline {
   struct Flat {
     Pslg pslg;
     Domain domain;
+
+    std::uint64_t bytes() const { return bytes_of(pslg) + domain.bytes(); }
   };
 
   const MeshRequest& request_;

@@ -127,6 +127,13 @@ Integral integral(const DomainPicture& picture, const SizeFunction& size) {
   return {sum * picture.area_of_cell(), !(most > least)};
 }
 
+// The run has a budget for its chords, the estimate has none: many arcs get fewer.
+DomainPicture picture_of_arcs(const Pslg& pslg) {
+  constexpr double kMaxChords = 1 << 20;
+  const auto chords = static_cast<double>(count_chords(pslg));
+  return DomainPicture::of(flatten_arcs(pslg, kFlatTurn * std::max(1.0, chords / kMaxChords)));
+}
+
 // What the size and the regions ask for.
 struct BySize {
   double triangles = 0;
@@ -135,7 +142,7 @@ struct BySize {
 
 BySize by_size_of(const MeshRequest& request) {
   const DomainPicture picture =
-      DomainPicture::of(request.pslg.arcs.empty() ? request.pslg : flatten_arcs(request.pslg));
+      request.pslg.arcs.empty() ? DomainPicture::of(request.pslg) : picture_of_arcs(request.pslg);
   const Size size = size_to_estimate_by(request.size);
   const Integral over_bound = integral(picture, size.function());
   LatticeShape lattice;
@@ -153,6 +160,16 @@ EdgeLimits limits_of(const SizeSpec& size) {
   for (const SizeAt& length : size.at)
     if (length.max_edge > 0) at.push_back(length);
   return EdgeLimits(std::move(at));
+}
+
+// Whether the size is made of the domain's triangulation, in which arcs are chords: not if it is
+// the same everywhere.
+bool sees_chords(const MeshRequest& request) {
+  const SizeSpec& size = request.size;
+  return !request.pslg.arcs.empty() &&
+         (std::holds_alternative<std::string>(size.value) ||
+          std::holds_alternative<Raster>(size.value) || !size.fields.empty() ||
+          size.gradation > 0 || size.cells_across > 0);
 }
 
 // What the lengths at markers ask for.
@@ -236,8 +253,9 @@ Estimate estimate(const MeshRequest& request, const Budget& budget) {
   const bool may_stream = budget.max_triangles == Budget{}.max_triangles &&
                           request.min_angle_deg <= kMaxStreamingAngleDeg && !request.keep;
   const std::uint64_t least = bytes_to_make(request.size, request.pslg);
+  const double chords = sees_chords(request) ? static_cast<double>(count_chords(request.pslg)) : 0;
   const double bytes =
-      kBytesPerRun + kBytesPerPoint * points + static_cast<double>(least) +
+      kBytesPerRun + kBytesPerPoint * (points + chords) + static_cast<double>(least) +
       bytes_of_lattices(by_size) +
       (request.layers.empty() ? 0 : kBytesBesideLayers * triangles + kBytesPerPoint * points) +
       bytes_of_mesh(triangles, request.leaf_triangles.value_or(leaf_triangles_for(triangles)),

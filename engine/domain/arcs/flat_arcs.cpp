@@ -12,13 +12,10 @@
 
 namespace weft {
 
-std::vector<double> bulges_of(const Pslg& pslg) {
-  std::vector<double> bulges(pslg.segments.size(), 0);
-  for (const Arc& arc : pslg.arcs) bulges[arc.segment] = arc.bulge;
-  return bulges;
-}
+namespace {
 
-Pslg flatten_arcs(const Pslg& pslg) {
+// As `bulges_of`, of a PSLG that `validate` may refuse: of what is no arc, 0.
+std::vector<double> bulges_of_any(const Pslg& pslg) {
   std::vector<double> bulges(pslg.segments.size(), 0);
   for (const Arc& arc : pslg.arcs) {
     if (arc.segment >= bulges.size() || !(std::fabs(arc.bulge) <= kMaxBulge)) continue;
@@ -26,9 +23,41 @@ Pslg flatten_arcs(const Pslg& pslg) {
     if (std::max(s.a, s.b) < pslg.points.size() && pslg.points[s.a] != pslg.points[s.b])
       bulges[arc.segment] = arc.bulge;
   }
+  return bulges;
+}
+
+double chords_of(double bulge, double turn) {
+  return std::ceil(turn_of(std::fabs(bulge)) / turn * (1 - 1e-9));
+}
+
+// Of all arcs.
+std::uint64_t count_chords(const std::vector<double>& bulges, double turn) {
+  double chords = 0;
+  for (const double bulge : bulges)
+    if (bulge != 0) chords += chords_of(bulge, turn);
+  return static_cast<std::uint64_t>(chords);
+}
+
+}  // namespace
+
+std::vector<double> bulges_of(const Pslg& pslg) {
+  std::vector<double> bulges(pslg.segments.size(), 0);
+  for (const Arc& arc : pslg.arcs) bulges[arc.segment] = arc.bulge;
+  return bulges;
+}
+
+std::uint64_t count_chords(const Pslg& pslg) {
+  return count_chords(bulges_of_any(pslg), kFlatTurn);
+}
+
+Pslg flatten_arcs(const Pslg& pslg, double turn) {
+  const std::vector<double> bulges = bulges_of_any(pslg);
+  const std::uint64_t chords = count_chords(bulges, turn);
   Pslg flat = pslg;
   flat.arcs.clear();
   flat.segments.clear();
+  flat.segments.reserve(pslg.segments.size() + chords);
+  flat.points.reserve(pslg.points.size() + chords);
   for (std::size_t i = 0; i < pslg.segments.size(); ++i) {
     Segment s = pslg.segments[i];
     if (bulges[i] == 0) {
@@ -37,8 +66,7 @@ Pslg flatten_arcs(const Pslg& pslg) {
     }
     const auto last = s.b;
     const Point a = pslg.points[s.a], b = pslg.points[s.b];
-    const double turn = turn_of(std::fabs(bulges[i]));
-    const double count = std::ceil(turn / kFlatTurn * (1 - 1e-9));
+    const double count = chords_of(bulges[i], turn);
     const Point middle = middle_of_arc(a, b, bulges[i]);
     for (double k = 1; k < count; ++k) {
       const double fraction = k / count;

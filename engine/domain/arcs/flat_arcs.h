@@ -3,6 +3,7 @@
 // functions.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "engine/base/geometry.h"
@@ -14,10 +15,14 @@ namespace weft {
 // Per segment, 0 if it is straight. REQUIRES: a PSLG that `validate` accepts.
 std::vector<double> bulges_of(const Pslg& pslg);
 
-// A PSLG without arcs: in their place, n = ceil(turn / kFlatTurn) equal chords. Sizes that depend
-// on the distance to segments are those of these. Arcs that `validate` refuses stay their chords.
+// A PSLG without arcs: in their place, equal chords that turn by at most `turn`, in radians. Sizes
+// that depend on the distance to segments are those of kFlatTurn. Arcs that `validate` refuses stay
+// their chords.
 inline constexpr double kFlatTurn = 0.034906585039886591;  // 2 degrees
-Pslg flatten_arcs(const Pslg& pslg);
+Pslg flatten_arcs(const Pslg& pslg, double turn = kFlatTurn);
+
+// How many chords take the place of arcs then, for kFlatTurn.
+std::uint64_t count_chords(const Pslg& pslg);
 
 // The box, with all places where arcs of the domain may have vertices.
 Box box_with_arcs(const Domain& domain, Box box);

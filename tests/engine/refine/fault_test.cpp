@@ -10,7 +10,9 @@
 #include <new>
 #include <random>
 
+#include "tests/engine/domain/arcs/arc_shapes.h"
 #include "tests/engine/parallel/parallel.h"
+#include "weft/weft.h"
 
 namespace {
 
@@ -167,6 +169,38 @@ TEST(HeldMemory, OfManyLeavesStaysWithinTheBudget) {
     EXPECT_EQ(summary.error().code, ErrorCode::kBudgetExceeded) << summary.error().message;
     EXPECT_LT(most_held - before, budget);
   }
+}
+
+// 3.6 M chords of 2 degrees, for a size that varies.
+MeshRequest with_many_circles() {
+  MeshRequest request{.size = "1 + x"};
+  add_box(request.pslg, {0, 0}, {200, 100});
+  for (int i = 0; i < 200; ++i)
+    for (int j = 0; j < 100; ++j) add_circle(request.pslg, {i + 0.5, j + 0.5}, 0.25, 2);
+  return request;
+}
+
+TEST(HeldMemory, OfChordsStaysWithinTheBudget) {
+  const MeshRequest request = with_many_circles();
+  constexpr std::int64_t kBudget = 110'000'000;
+  ExecutionContext context({.max_bytes = kBudget});
+  const std::int64_t before = held;
+  most_held = before;
+  ForgetfulSink sink;
+  const auto summary = generate_mesh(request, sink, context);
+  ASSERT_FALSE(summary);
+  EXPECT_EQ(summary.error().code, ErrorCode::kBudgetExceeded);
+  EXPECT_TRUE(summary.error().message.starts_with("chords of arcs")) << summary.error().message;
+  EXPECT_LT(most_held - before, kBudget);
+}
+
+TEST(HeldMemory, OfAnEstimateIsThatOfAMillionChordsAtTheMost) {
+  const MeshRequest request = with_many_circles();
+  const std::int64_t before = held;
+  most_held = before;
+  const Estimate expected = estimate(request);
+  EXPECT_LT(most_held - before, 48'000'000);
+  EXPECT_GT(expected.bytes, 1'000'000'000u);  // the run makes them all
 }
 
 }  // namespace

@@ -206,6 +206,9 @@ TEST(Chords, PolylinesHaveEqualPartsOfTwoDegrees) {
     EXPECT_NEAR(length(b - a), 2 * std::sin(kPi / 180), 1e-14);
     EXPECT_NEAR(length(a - Point{0, 0}), 1, 1e-14);
   }
+  EXPECT_EQ(count_chords(pslg), 180U);
+  EXPECT_EQ(flatten_arcs(pslg, kPi / 3).segments.size(), 7U);
+  EXPECT_EQ(flatten_arcs(pslg, 2 * kPi).segments.size(), 3U);
 }
 
 TEST(Chords, TheDomainKnowsItsArcsByTheInput) {
