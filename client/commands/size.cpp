@@ -25,13 +25,18 @@ namespace weft::client {
 namespace {
 
 // Square cells over the domain, `most` along the longer side.
-Raster cells_over(Domain domain, std::uint32_t most) {
-  flatten_arcs(domain);
+Raster cells_over(const Domain& domain, std::uint32_t most) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Point low{kInfinity, kInfinity}, high{-kInfinity, -kInfinity};
-  for (const Point p : domain.points) {
+  const auto add = [&](Point p) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  };
+  std::ranges::for_each(domain.points, add);
+  for (const Domain::Arc& arc : domain.arcs) {
+    const auto& segment = domain.segments[arc.segment];
+    std::ranges::for_each(
+        chord_corners(domain.points[segment.a], domain.points[segment.b], arc.bulge), add);
   }
   const double width = high.x - low.x;
   const double height = high.y - low.y;

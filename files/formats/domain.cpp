@@ -2,10 +2,14 @@
 #include "files/formats/domain.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
 #include <utility>
 #include <vector>
 
 #include "checker/domain/flattened.h"
+#include "files/base/text.h"
 
 namespace weft::files {
 
@@ -57,8 +61,17 @@ std::vector<Point> chord_corners(Point a, Point b, double bulge) {
   return corners;
 }
 
-void flatten_arcs(Domain& domain) {
-  if (domain.arcs.empty()) return;
+Result<void> flatten_arcs(Domain& domain) {
+  if (domain.arcs.empty()) return {};
+  constexpr double kMaxChords = 4'000'000;
+  double chords = 0;
+  for (const Domain::Arc& arc : domain.arcs)
+    chords += 2 * 180 / std::numbers::pi * std::atan(std::fabs(arc.bulge));
+  if (chords > kMaxChords)
+    return fail(ExitCode::kUnreadableInput,
+                "the domain's " + with_separators(domain.arcs.size()) + " arcs are " +
+                    with_separators(static_cast<std::uint64_t>(chords)) +
+                    " chords of 2 degrees, and at most 4,000,000 are made");
   std::vector<Domain::Segment> segments;
   Provenance places;
   auto arc = domain.arcs.begin();
@@ -82,6 +95,7 @@ void flatten_arcs(Domain& domain) {
   domain.segment_places = std::move(places);
   domain.arcs.clear();
   if (!domain.point_markers.empty()) domain.point_markers.resize(domain.points.size());
+  return {};
 }
 
 void fill_polygons(Domain& domain, PolygonFill fill) {

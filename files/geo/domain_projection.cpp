@@ -168,7 +168,8 @@ Result<DomainProjection> DomainProjection::project(Domain& domain,
     return fail(ExitCode::kUnreadableInput,
                 "the domain has " + with_separators(domain.arcs.size()) + " arcs, of which " +
                     with_separators(kMaxArcs) + " are projected at most");
-  flatten_arcs(domain);  // what is a circle in degrees is none in the plane
+  // What is a circle in degrees is none in the plane.
+  if (auto flat = flatten_arcs(domain); !flat) return tl::unexpected(flat.error());
   const auto extent = lonlat_extent(domain);
   if (!extent) return tl::unexpected(extent.error());
   auto projection = projection_for(domain, *extent, options.crs);

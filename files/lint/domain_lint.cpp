@@ -207,7 +207,10 @@ Result<Lint> lint_domain(const Domain& domain, const DataPath& path, const LintS
   const std::string file = path.string();
   const bool of_mesh = !is_plain_domain_path(path);
   const auto prepared = JudgedDomain::make(domain, settings.lonlat, of_mesh);
-  if (!prepared) return tl::unexpected(prepared.error());
+  if (!prepared) {
+    const auto& [exit, message] = prepared.error();
+    return fail(exit, message.starts_with(file) ? message : file + ": " + message);
+  }
   const check::Domain judged =
       checker_domain(prepared->domain(), settings.snap / (settings.lonlat ? kMetresPerDegree : 1));
   check::Findings malformed(1);

@@ -71,7 +71,7 @@ void join_ends(const Domain& degrees, Domain& plane) {
 Result<JudgedDomain> JudgedDomain::make(const Domain& domain, bool lonlat, bool of_mesh) {
   if (!domain.arcs.empty()) {
     Domain flat = domain;
-    flatten_arcs(flat);
+    if (auto done = flatten_arcs(flat); !done) return tl::unexpected(done.error());
     return make(flat, lonlat, of_mesh);
   }
   JudgedDomain judged;

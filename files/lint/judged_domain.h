@@ -11,7 +11,8 @@ class JudgedDomain {
  public:
   // `lonlat`: the domain is in degrees, which are unrolled beyond the date line; if it goes around
   // all longitudes, it is judged in a plane around its pole. `of_mesh`: it was read from a mesh, so
-  // a segment inside is listed twice (mesh_domain.h). Errors: those of lonlat_extent.
+  // a segment inside is listed twice (mesh_domain.h). Errors: those of lonlat_extent and of
+  // flatten_arcs.
   static Result<JudgedDomain> make(const Domain& domain, bool lonlat, bool of_mesh);
 
   // Segments have the places of those of the file.

@@ -178,7 +178,7 @@ class Reader {
     constexpr std::size_t kMaxArcs = 5000;
     if (domain.arcs.size() > kMaxArcs) return;
     Domain flat = domain;
-    flatten_arcs(flat);
+    if (!flatten_arcs(flat)) return;
     const std::vector<std::size_t> nested = nested_outlines(flat);
     if (nested.empty()) return;
     std::string first = flat.segment_places.locate(nested[0]);

@@ -73,7 +73,8 @@ void add_lone_points(const Domain& domain, Domain& out) {
 Result<Domain> seeded(Domain domain) {
   if (domain.fill == Domain::Fill::kSeeds && domain.areas.empty()) return domain;
   if (const std::size_t arcs = domain.arcs.size(); arcs > 0) {
-    flatten_arcs(domain);
+    if (auto flat = flatten_arcs(domain); !flat)
+      return fail(flat.error().exit, flat.error().message + "; a .pb file keeps arcs");
     domain.warnings.push_back(
         {.kind = WarningKind::kNotWritten,
          .count = arcs,

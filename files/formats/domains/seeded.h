@@ -3,8 +3,9 @@
 // and segments become those of the arrangement, which the checker makes, and the faces that are not
 // meshed, or that have a region or a bound, get a seed each.
 //
-// Errors (kUnreadableInput): what the checker refuses, such as over 2,000,000 contacts of segments;
-// a domain with so many tall faces that the search for seeds would not end in reasonable time.
+// Errors (kUnreadableInput): what the checker refuses, such as over 2,000,000 contacts of segments
+// or 4,000,000 chords of arcs; a domain with so many tall faces that the search for seeds would not
+// end in reasonable time.
 #pragma once
 
 #include "files/base/error.h"

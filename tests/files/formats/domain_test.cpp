@@ -15,7 +15,7 @@ TEST(FlatDomain, FlattensArcsToEqualChordsOfTwoDegrees) {
   domain.segments = {{2, 0, 3}, {0, 1, 7}, {1, 0, 8}};
   domain.arcs = {{1, 1}, {2, std::tan(std::acos(-1.0) / 4)}};
   domain.segment_places.add(0, "disk.dxf:", 10, "");
-  flatten_arcs(domain);
+  ASSERT_TRUE(flatten_arcs(domain));
   EXPECT_TRUE(domain.arcs.empty());
   ASSERT_EQ(domain.segments.size(), 181u);
   ASSERT_EQ(domain.points.size(), 181u);
@@ -37,9 +37,24 @@ TEST(FlatDomain, WithoutArcsStaysAsItIs) {
   Domain domain;
   domain.points = {{0, 0}, {1, 0}};
   domain.segments = {{0, 1}};
-  flatten_arcs(domain);
+  ASSERT_TRUE(flatten_arcs(domain));
   EXPECT_EQ(domain.points.size(), 2u);
   EXPECT_EQ(domain.segments.size(), 1u);
+}
+
+TEST(FlatDomain, OfTooManyChordsIsRefused) {
+  Domain domain;
+  domain.points = {{0, 0}, {1, 0}};
+  for (std::uint32_t i = 0; i < 45'000; ++i) {
+    domain.segments.push_back({0, 1});
+    domain.arcs.push_back({i, -1});
+  }
+  const auto flat = flatten_arcs(domain);
+  ASSERT_FALSE(flat);
+  EXPECT_EQ(flat.error().message,
+            "the domain's 45,000 arcs are 4,050,000 chords of 2 degrees, and at most 4,000,000 are "
+            "made");
+  EXPECT_EQ(domain.arcs.size(), 45'000u);
 }
 
 }  // namespace

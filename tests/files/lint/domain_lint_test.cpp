@@ -124,6 +124,20 @@ TEST_F(DomainLint, RefusesCoordinatesThatCannotBeComputedWith) {
   EXPECT_EQ(refused.error().message.substr(0, 14), "a.poly: point ");
 }
 
+TEST_F(DomainLint, RefusesArcsThatAreTooManyChords) {
+  Domain domain;
+  domain.points = {{0, 0}, {1, 0}};
+  for (std::uint32_t i = 0; i < 45'000; ++i) {
+    domain.segments.push_back({0, 1});
+    domain.arcs.push_back({i, 1});
+  }
+  const auto refused = lint_domain(domain, "vias.dxf", {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message,
+            "vias.dxf: the domain's 45,000 arcs are 4,050,000 chords of 2 degrees, and at most "
+            "4,000,000 are made");
+}
+
 TEST_F(DomainLint, ModelsHaveNoFaults) {
   for (const char* name :
        {"cylinder.poly", "key.poly", "pipe.poly", "us-east-coast.poly", "us-east-coast.geojson"}) {
