@@ -33,7 +33,7 @@ build=(
   protobuf-compiler protobuf-compiler-grpc
   "${libraries[@]}"
 )
-arm64=(lld qemu-user-static mmdebstrap binutils-aarch64-linux-gnu)
+arm64=(lld qemu-user-static mmdebstrap arch-test binutils-aarch64-linux-gnu)
 geo=(libgdal-dev libproj-dev libmetis-dev)
 python=(python3-grpcio python3-protobuf python3-numpy python3-pyproj)
 weftd=(
