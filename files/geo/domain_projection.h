@@ -11,6 +11,10 @@
 // vertices are within 180 degrees of the middle of the file's longitudes: -180 to 180 if those jump
 // at the date line, beyond 180 if those go on beyond.
 //
+// What is brought to the plane lies on a grid of 1/1024 of a metre there, so that the mesh does not
+// depend on the last bits of the processor's sines. Degrees of new vertices, which are brought
+// back, do: they lie on no grid.
+//
 // A segment of the file is straight in longitude and latitude, as in GeoJSON, and goes the short
 // way round. In the plane it is a curve: points are added on it until every piece is straight
 // within a thousandth of its length. The added points come after those of the file, and the added
@@ -64,8 +68,10 @@ class DomainProjection {
 
   bool to_metres() const { return to_metres_; }
   Point to_lonlat(Point metres) const;
+  // The same for people, to 1e-7 of a degree: to a centimetre.
+  Point named_place(Point metres) const;
   // Not finite if PROJ cannot project the point.
-  Point to_plane(Point lonlat) const { return projection_.forward(lonlat); }
+  Point to_plane(Point lonlat) const;
   // The coordinates of all vertices, in memory of the mesh's pages. Errors (kInternal): PROJ cannot
   // bring a vertex back.
   Result<ScratchArray<double>> to_lonlat(const MeshView& mesh) const;

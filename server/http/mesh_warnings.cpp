@@ -26,7 +26,7 @@ void add_warnings(const v1::Summary& summary, const SentDomain& sent, std::uint6
   const auto place = [&sent](double x, double y) {
     files::Point at{x, y};
     if (sent.projection != nullptr && !sent.projection->to_metres())
-      at = sent.projection->to_lonlat(at);
+      at = sent.projection->named_place(at);
     return files::coordinates(at.x, at.y);
   };
   if (summary.has_outside()) {

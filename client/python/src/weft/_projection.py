@@ -29,6 +29,7 @@ _DEGREE = math.pi / 180
 _STRAIGHT = 1e-3  # of the length of a piece
 _MOST_PIECES = 4096
 _MOST_ADDED = 1_000_000
+_PER_METRE = 1024  # in the plane, coordinates are multiples of 1 / _PER_METRE
 
 
 class Projection:
@@ -74,7 +75,7 @@ class Projection:
 
         def moved(record: Any, x: str, y: str) -> Any:
             at = np.array([[getattr(record, x), getattr(record, y)]])
-            return dataclasses.replace(record, **dict(zip((x, y), self._as_in_file(self._inverse(at))[0].tolist())))
+            return dataclasses.replace(record, **dict(zip((x, y), self._named_places(at)[0].tolist())))
 
         unrefined, merging = summary.unrefined, summary.merging
         if unrefined.precision + unrefined.streaming:
@@ -87,7 +88,7 @@ class Projection:
             merging = moved(merging, "vanished_x", "vanished_y")
         simplification = summary.simplification
         if simplification and simplification.cuts:
-            cuts = self._as_in_file(self._inverse(np.array(simplification.cuts)))
+            cuts = self._named_places(np.array(simplification.cuts))
             simplification = dataclasses.replace(simplification, cuts=tuple(map(tuple, cuts.tolist())))
         return dataclasses.replace(
             summary, unrefined=unrefined, merging=merging, simplification=simplification,
@@ -123,13 +124,17 @@ class Projection:
     def _inverse(self, metres: Floats) -> Floats:
         return np.column_stack(self._transformer.transform(*metres.T, direction="INVERSE"))
 
+    def _named_places(self, metres: Floats) -> Floats:
+        """In degrees for people, to 1e-7 of one: to a centimetre."""
+        return np.round(self._as_in_file(self._inverse(metres)), 7)
+
     def _finite(self, what: str, lonlat: Floats) -> Floats:
         at = self._forward(lonlat)
         bad = np.flatnonzero(~np.isfinite(at).all(axis=1))
         if len(bad):
             raise DomainError(f"{what}: point {bad[0]} cannot be projected from longitude and "
                               f"latitude {tuple(lonlat[bad[0]].tolist())}")
-        return at
+        return _on_grid(at)
 
     def _checked(self, what: str, lonlat: Floats) -> Floats:
         """Points that the projection takes there and back."""
@@ -144,7 +149,7 @@ class Projection:
         if len(bad):
             raise DomainError(f"domain.{what}[{bad[0]}], {tuple(lonlat[bad[0]].tolist())}, is outside "
                               f"of what {self.name!r} projects")
-        return at
+        return _on_grid(at)
 
     def _as_in_file(self, lonlat: Floats) -> Floats:
         lonlat = lonlat.copy()
@@ -342,6 +347,12 @@ def _step(start: Any, end: Any) -> Any:
         step = np.where(step > 180, step - 360, step)
         step = np.where(step < -180, step + 360, step)
     return step
+
+
+def _on_grid(metres: Floats) -> Floats:
+    """Where the sines of every processor bring the point."""
+    nearest: Floats = np.rint(metres * _PER_METRE) / _PER_METRE
+    return nearest
 
 
 def _on_segment(a: Floats, b: Floats, at: Floats) -> Floats:
