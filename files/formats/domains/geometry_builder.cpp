@@ -172,6 +172,7 @@ std::uint32_t GeometryBuilder::label_of(Labels& labels, NameKind kind, std::int3
 
 void GeometryBuilder::check_crossing(const Chain& ring, std::span<const Point> corners,
                                      const std::string& path) {
+  if (ring.points.size() == 2) return;  // two arcs, which meet at their ends alone
   const std::vector<Point> plane = lonlat_ ? unrolled(corners, 0) : std::vector<Point>();
   const auto crossing = find_crossing(lonlat_ ? plane : corners);
   polygon_crosses_ = polygon_crosses_ || crossing;
