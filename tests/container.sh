@@ -9,18 +9,19 @@
 # a browser.
 #
 # weftd: buildah starts the server, and a client outside meshes through it. Fails if the image is over
-# 120 MB or has the client, if the server runs as root, if anything but the volume was written to, if
-# the mesh is wrong or not that of WEFT, if the health check succeeds without a server, if the server does not drain, or if it
-# has no console; it only says so if the console has no pages, because npm got no packages. If
-# tests/console has its packages, too, a browser works with the image's console: a mesh, a polygon drawn
-# by hand, a cancelled run, a killed server, a token. WEFT_ALL_PAGES=1 runs every test of the browser.
+# 120 MB (135 for arm64, of which Debian itself takes 98 instead of 84) or has the client, if the server
+# runs as root, if anything but the volume was written to, if the mesh is wrong or not that of WEFT, if the
+# health check succeeds without a server, if the server does not drain, or if it has no console; it only
+# says so if the console has no pages, because npm got no packages. If tests/console has its packages, too,
+# a browser works with the image's console: a mesh, a polygon drawn by hand, a cancelled run, a killed
+# server, a token. WEFT_ALL_PAGES=1 runs every test of the browser.
 #
 # weft: meshes files of the user who runs it, with what GDAL, PROJ and METIS are for, on a server of its
 # own. Prints the sizes of both.
 set -euo pipefail
 weft=$(realpath "${1:?usage: tests/container.sh WEFT [ARM64]}")
-arm64=() suffix=''
-[[ ! ${2:-} ]] || arm64=(--arm64 "$(realpath "$2")") suffix=-arm64
+arm64=() suffix='' limit=120
+[[ ! ${2:-} ]] || arm64=(--arm64 "$(realpath "$2")") suffix=-arm64 limit=135
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 ((EUID == 0)) || {
   echo "container.sh: needs root, for debootstrap and buildah" >&2
@@ -174,4 +175,4 @@ in_client mesh coast.gpkg "${coast[@]}" -o parts.vtu --parts 2 --quiet
 [[ $(stat -c %u "$scratch/mounted/coast.vtu") == 1000 ]] || fail "the mesh is not user 1000's"
 
 echo "images$suffix: weftd $size MB, weft $client_size MB"
-((size <= 120)) || fail "the image weftd has $size MB, more than 120"
+((size <= limit)) || fail "the image weftd has $size MB, more than $limit"
