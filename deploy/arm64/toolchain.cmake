@@ -25,7 +25,7 @@ foreach(kind EXE SHARED MODULE)
   set(CMAKE_${kind}_LINKER_FLAGS_INIT -fuse-ld=lld)
 endforeach()
 
-# -R: qemu 7.2 keeps 6 MB of its own for each GiB that was ever reserved, unless new ranges are taken from a room where
-# they find the place of old ones. TEST_SLOWDOWN is for tests/support/processor_time.h.
+# -R: qemu 7.2 keeps 6 MB of its own for each GiB of addresses that was ever reserved. In a room of this size those are 3 GB
+# at most, and nine runs find place at a time. TEST_SLOWDOWN is for tests/support/processor_time.h.
 set(CMAKE_CROSSCOMPILING_EMULATOR
-  qemu-aarch64-static -R 16384G -E TEST_SLOWDOWN=20 -L ${WEFT_SYSROOT})
+  qemu-aarch64-static -R 512G -E TEST_SLOWDOWN=20 -L ${WEFT_SYSROOT})
