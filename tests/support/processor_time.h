@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Processor time, which other programs hardly stretch: what bounds a time on a machine that may be
 // busy. The bounds of tests are 20 times what a quiet machine of two cores takes, and slowdown()
-// times as much.
+// times as much; tests that try many inputs try as many times fewer.
 #pragma once
 
 #include <cstdlib>

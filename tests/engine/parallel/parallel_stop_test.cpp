@@ -158,15 +158,15 @@ class HoldsAt final : public MemorySource {
 };
 
 TEST(ParallelStop, AThousandCancelledJobsLeaveNothingBehind) {
-  constexpr int kJobs = kSanitized ? 100 : 1000;
+  const int jobs = static_cast<int>((kSanitized ? 100 : 1000) / slowdown());
   const MeshRequest request = busy_square(8'000, 200);
   Arena arena(4);
   const auto whole = mesh_on(&arena, request);
   ASSERT_TRUE(whole);
   std::mt19937_64 random(3);
   Memory early{};
-  for (int job = 0; job < kJobs; ++job) {
-    if (job == kJobs / 5) early = memory();
+  for (int job = 0; job < jobs; ++job) {
+    if (job == jobs / 5) early = memory();
     ExecutionContext context;
     context.set_arena(arena);
     const std::uint64_t moment = random() % (whole->triangles * 9 / 10);
@@ -186,8 +186,10 @@ TEST(ParallelStop, AThousandCancelledJobsLeaveNothingBehind) {
   }
   const Memory late = memory();
   if (!kSanitized) {
-    // One leaked mesh in a hundred would be more.
-    EXPECT_LT(late.resident - early.resident, 16 << 20);
+    // One leaked mesh in a hundred would be more. What qemu holds is its own: some of each thread.
+    if (slowdown() == 1) {
+      EXPECT_LT(late.resident - early.resident, 16 << 20);
+    }
     EXPECT_LT(late.allocated - early.allocated, 2 << 20);
   }
   EXPECT_EQ(outcome(mesh_on(&arena, request)), outcome(whole));
