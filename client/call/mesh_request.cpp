@@ -127,7 +127,9 @@ Names names_of(const v1::Domain& domain) {
 
 v1::GenerateMeshRequest make_request(const Domain& domain, const RequestOptions& request_options) {
   v1::GenerateMeshRequest request = request_options.asked;
-  request.mutable_domain()->MergeFromString(domain_message(domain));
+  const v1::Domain asked = request.domain();  // its `snap`
+  request.mutable_domain()->ParseFromString(domain_message(domain));
+  request.mutable_domain()->MergeFrom(asked);
   if (!request_options.size.empty() && request.size().field_case() == v1::SizeField::FIELD_NOT_SET)
     request.mutable_size()->MergeFrom(to_size(request_options.size));
   return request;

@@ -2,7 +2,6 @@
 #include "client/call/server_error.h"
 
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <string_view>
 
@@ -65,12 +64,10 @@ std::optional<Point> place_of(const google::rpc::ErrorInfo& info) {
 std::string on_the_globe(const google::rpc::ErrorInfo& info, const DomainProjection& projection) {
   std::string text = "\n  places are in metres of " + projection.name();
   const auto place = place_of(info);
-  const Point lonlat = place ? projection.to_lonlat(*place) : Point{};
+  const Point lonlat = place ? projection.named_place(*place) : Point{};
   if (!place || !std::isfinite(lonlat.x) || !std::isfinite(lonlat.y)) return text;
-  char degrees[96];  // a millionth of a degree is a decimetre
-  std::snprintf(degrees, sizeof degrees, "; this one is at longitude %.6f, latitude %.6f", lonlat.x,
-                lonlat.y);
-  return text + degrees;
+  return text + "; this one is at longitude " + shortest(lonlat.x) + ", latitude " +
+         shortest(lonlat.y);
 }
 
 }  // namespace

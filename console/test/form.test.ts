@@ -50,6 +50,15 @@ test("the rest of the form reaches the request; what is empty is not set", () =>
   expect(sparse.budget).toBeUndefined();
 });
 
+test("a domain that was projected keeps its distance of merging unless another one is asked for", () => {
+  const snap = (text: string) => {
+    const made = requestOf({ ...emptyForm, size: "1", snap: text }, { ...domain, snap: 0.5 });
+    return isRequest(made) && made.domain?.snap;
+  };
+  expect(snap("")).toBe(0.5);
+  expect(snap("0.25")).toBe(0.25);
+});
+
 test("a gradation within the domain is asked for and shown beside a gradation alone", () => {
   const within = (gradation: string) => request({ size: "1", gradation, gradationWithin: true });
   expect(within("0.2").size).toMatchObject({ gradation: 0.2, gradationWithin: true });

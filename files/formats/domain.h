@@ -105,6 +105,7 @@ struct Domain {
   std::vector<Area> areas;
   std::vector<RegionValue> region_values;  // of ids that stand for another number in the file
   Fill fill = Fill::kSeeds;
+  double snap = 0;  // features nearer together are one, unless a request says another distance
   std::optional<CoordinateSystem> system;  // if the file names one
   Names names;                             // of markers and regions, of the domain's own or not
   std::vector<Warning> warnings;           // about the file

@@ -32,10 +32,10 @@ Point rounded(Point at, double per_unit) {
   return {std::nearbyint(at.x * per_unit) / per_unit, std::nearbyint(at.y * per_unit) / per_unit};
 }
 
-// On a grid of 2^-10 metres. Sines of two processors bring a point to places nanometres apart, so
-// nearly always to the same one of these.
+// Sines of two processors bring a point to places nanometres apart, so nearly always to the same
+// one of these.
 Point on_grid(Point metres) {
-  return rounded(metres, 1024);
+  return rounded(metres, 1 / kProjectedGrid);
 }
 
 // Projects points of one domain.
@@ -207,6 +207,7 @@ Result<DomainProjection> DomainProjection::project(Domain& domain,
     if (!at) return tl::unexpected(at.error());
     domain.points.push_back(*at);
   }
+  domain.snap = kProjectedSnap;
   made.metres_ = domain.points;
   for (std::size_t i = 0; i < domain.holes.size(); ++i) {
     const auto at = projecting.checked(domain.holes[i], domain.hole_places, i);

@@ -11,9 +11,12 @@
 // vertices are within 180 degrees of the middle of the file's longitudes: -180 to 180 if those jump
 // at the date line, beyond 180 if those go on beyond.
 //
-// What is brought to the plane lies on a grid of 1/1024 of a metre there, so that the mesh does not
-// depend on the last bits of the processor's sines. Degrees of new vertices, which are brought
-// back, do: they lie on no grid.
+// What is brought to the plane lies on a grid there (projection_options.h), so that the mesh nearly
+// never depends on the last bits of the processor's sines. Degrees of new vertices, which are
+// brought back, do: they lie on no grid.
+//
+// A point on a segment in degrees is off it in the plane: by what rounding to the grid moves, and
+// by what a short segment, which is not divided, bends. So the domain in the plane has a `snap`.
 //
 // A segment of the file is straight in longitude and latitude, as in GeoJSON, and goes the short
 // way round. In the plane it is a curve: points are added on it until every piece is straight

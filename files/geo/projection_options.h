@@ -6,6 +6,11 @@
 
 namespace weft::files {
 
+// In the plane, in metres: coordinates are multiples of kProjectedGrid, and features nearer
+// together than kProjectedSnap are one, unless a request says another distance.
+inline constexpr double kProjectedGrid = 0x1p-10;
+inline constexpr double kProjectedSnap = 2 * kProjectedGrid;
+
 struct ProjectionOptions {
   bool lonlat = false;     // the domain is in longitude and latitude
   std::string crs{};       // the projection, as PROJ names it; empty: one that suits the domain

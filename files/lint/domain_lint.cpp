@@ -12,6 +12,7 @@
 #include "files/formats/domain_formats.h"
 #include "files/formats/domains/to_checker.h"
 #include "files/formats/mesh_formats.h"
+#include "files/geo/projection_options.h"
 #include "files/lint/judged_domain.h"
 
 namespace weft::files {
@@ -211,8 +212,9 @@ Result<Lint> lint_domain(const Domain& domain, const DataPath& path, const LintS
     const auto& [exit, message] = prepared.error();
     return fail(exit, message.starts_with(file) ? message : file + ": " + message);
   }
+  const double snap = settings.lonlat && settings.snap == 0 ? kProjectedSnap : settings.snap;
   const check::Domain judged =
-      checker_domain(prepared->domain(), settings.snap / (settings.lonlat ? kMetresPerDegree : 1));
+      checker_domain(prepared->domain(), snap / (settings.lonlat ? kMetresPerDegree : 1));
   check::Findings malformed(1);
   if (!check::judge_domain(judged, malformed)) {
     check::Report report;

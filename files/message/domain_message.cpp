@@ -95,6 +95,7 @@ std::string domain_message(const Domain& domain) {
     if (region.max_area) seed.add_double(4, *region.max_area);
   }
   message.add_enum(6, enumerator_of(domain.fill));
+  if (domain.snap > 0) message.add_double(7, domain.snap);
   add_names(message, 8, domain.names.markers);
   add_names(message, 9, domain.names.regions);
   add_areas(message, domain);

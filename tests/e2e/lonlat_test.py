@@ -8,10 +8,14 @@ import os
 import pathlib
 import re
 import subprocess
+import sys
 
 import numpy as np
 import pyproj
 import pytest
+
+sys.path.append(str(pathlib.Path(__file__).parents[1] / "documents"))
+import processors  # noqa: E402
 
 MODELS = pathlib.Path(__file__).parents[1] / "models"
 COAST = MODELS / "us-east-coast.geojson"
@@ -183,14 +187,45 @@ def test_the_mesh_in_metres_is_checked(tmp_path: pathlib.Path):
 
 def test_the_mesh_in_metres_is_that_of_processors_with_other_sines(tmp_path: pathlib.Path):
     # Without fused operations, the C library's sines round otherwise, and so does PROJ.
-    plain = {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX2_Usable,-FMA_Usable"}
     meshes = []
-    for environment in ({}, plain):
-        file = tmp_path / f"{len(meshes)}.vtu"
+    for processor in ("own", "sse4"):
+        file = tmp_path / f"{processor}.vtu"
         subprocess.run([WEFT, "mesh", COAST, "-o", file, "--quiet", "--to-metres", "--size", "1e8"],
-                       check=True, env={**os.environ, **environment})
+                       check=True, env=os.environ | processors.environment(processor))
         meshes.append(file.read_bytes())
     assert meshes[0] == meshes[1]
+
+
+def parcels(folder: pathlib.Path) -> pathlib.Path:
+    """Two rows of parcels of some 20 m. The corners of one row lie in the middle of the walls of the other."""
+    def row(first: float, y: float, many: int) -> list:
+        def at(across: float, up: float) -> tuple[float, float]:
+            return (13.4 + (0.96 * across - 0.28 * up) * 2.5e-5, 52.5 + (0.28 * across + 0.96 * up) * 1.5e-5)
+        return [[[at(x + dx, y + dy) for dx, dy in [(0, 0), (12, 0), (12, 16), (0, 16), (0, 0)]]]
+                for x in (first + 12 * i for i in range(many))]
+
+    file = folder / "parcels.geojson"
+    file.write_text(json.dumps({"type": "MultiPolygon", "coordinates": [*row(0, 0, 6), *row(5, 16, 5)]}))
+    return file
+
+
+def test_a_corner_on_the_wall_of_a_neighbour_stays_there(tmp_path: pathlib.Path):
+    # What rounding to the grid moves makes no triangles of its size.
+    file = parcels(tmp_path)
+    mesh = Mesh(tmp_path, file, "--to-metres", "--edge", 2)
+    assert mesh.report["merging"]["tolerance"] == 2 / 1024
+    assert mesh.report["merging"]["segments"] > 5
+    assert not mesh.report["narrow"]
+    finer = Mesh(tmp_path, file, "--to-metres", "--edge", 2, "--snap", 1e-6)
+    assert finer.report["triangles"] > 3 * mesh.report["triangles"]
+
+
+def test_the_domain_that_is_checked_is_merged_as_that_which_is_meshed(tmp_path: pathlib.Path):
+    file, mesh = parcels(tmp_path), tmp_path / "mesh.vtu"
+    subprocess.run([WEFT, "mesh", file, "-o", mesh, "--to-metres", "--edge", "2", "--quiet"], check=True)
+    check = [WEFT, "check", mesh, "--domain", file, "--to-metres", "--edge", "2"]
+    assert subprocess.run(check).returncode == 0
+    assert subprocess.run([*check, "--snap", "1e-6"]).returncode == 3
 
 
 def test_degrees_that_the_file_names_are_a_warning_without_lonlat(tmp_path):

@@ -166,6 +166,18 @@ def test_of_a_raster_file_only_the_part_is_read_that_the_plane_needs(
         sizes.clear()
 
 
+def test_a_corner_on_a_wall_is_merged_with_it_as_on_the_command_line(client, digest_of, tmp_path):
+    domain = tmp_path / "parcels.geojson"
+    rings = [[(13.4, 52.5), (13.4011, 52.5003), (13.4009, 52.5009), (13.4, 52.5)],
+             [(13.40055, 52.50015), (13.4011, 52.5003), (13.4012, 52.4998), (13.40055, 52.50015)]]
+    domain.write_text(json.dumps({"type": "MultiPolygon", "coordinates": [[ring] for ring in rings]}))
+    mesh = client.mesh(domain, edge=5, lonlat=True)
+    assert mesh.summary.merging.tolerance == 2 / 1024
+    assert mesh.digest == digest_of(domain, "--lonlat", "--edge", 5)
+    assert client.mesh(domain, edge=5, lonlat=True, snap=0.5).digest == \
+        digest_of(domain, "--lonlat", "--edge", 5, "--snap", 0.5)
+
+
 def test_places_of_the_summary_are_in_degrees_as_the_mesh_is(client):
     box, stray = [(10, 50), (12, 50), (12, 51), (10, 51), (10.002, 51.002)], [(13, 50), (13.5, 50)]
     domain = weft.Domain([*box, *stray], [(0, 1), (1, 2), (2, 3), (3, 0), (3, 4), (5, 6)])

@@ -76,7 +76,7 @@ export function requestOf(form: FormText, domain: Domain): GenerateMeshRequest |
     problems.maxTriangles = "a whole number is expected";
   if (Object.keys(problems).length > 0) return problems;
   return create(GenerateMeshRequestSchema, {
-    domain: { ...domain, snap: snap ?? 0 },
+    domain: { ...domain, snap: snap ?? domain.snap },
     size: {
       field:
         form.sizeKind === "none"

@@ -22,7 +22,7 @@ check::Domain checker_domain(const Domain& domain, double snap) {
   out.fill = domain.fill == Domain::Fill::kSeeds     ? check::Fill::kSeeds
              : domain.fill == Domain::Fill::kEvenOdd ? check::Fill::kEvenOdd
                                                      : check::Fill::kUnion;
-  out.snap = snap;
+  out.snap = snap > 0 ? snap : domain.snap;
   return out;
 }
 

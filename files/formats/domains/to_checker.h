@@ -7,7 +7,7 @@
 
 namespace weft::files {
 
-// `snap`: within which features are merged, 0 or more.
+// `snap`: within which features are merged, 0 or more; 0: that of the domain.
 check::Domain checker_domain(const Domain& domain, double snap);
 
 }  // namespace weft::files

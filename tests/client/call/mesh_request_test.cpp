@@ -28,6 +28,16 @@ TEST(RasterOfARequest, IsTheOneThatItsSizeNames) {
             (std::vector<double>{1, 2, 3, 4, 5, 6}));
 }
 
+TEST(SnapOfARequest, IsThatOfTheDomainUnlessItIsAskedFor) {
+  Domain domain = square_domain(1);
+  EXPECT_EQ(make_request(domain, {}).domain().snap(), 0);
+  domain.snap = 0.5;
+  EXPECT_EQ(make_request(domain, {}).domain().snap(), 0.5);
+  RequestOptions options;
+  options.asked.mutable_domain()->set_snap(0.25);
+  EXPECT_EQ(make_request(domain, options).domain().snap(), 0.25);
+}
+
 TEST(LayersOfARequest, HaveTheNumbersOfTheirMarkers) {
   Domain domain = square_domain(1);
   domain.names.markers = {{3, "wall"}};

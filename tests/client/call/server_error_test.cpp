@@ -81,7 +81,7 @@ TEST(ServerError, GivesPlacesInThePlaneOnTheGlobe) {
   (*info.mutable_metadata())["x"] = shortest(at.x);
   EXPECT_TRUE(message(grpc::StatusCode::INVALID_ARGUMENT).ends_with(plane)) << "half a place";
   (*info.mutable_metadata())["y"] = shortest(at.y);
-  const std::string globe = plane + "; this one is at longitude -71.250000, latitude 37.500000";
+  const std::string globe = plane + "; this one is at longitude -71.25, latitude 37.5";
   EXPECT_TRUE(message(grpc::StatusCode::INVALID_ARGUMENT).ends_with(globe))
       << message(grpc::StatusCode::INVALID_ARGUMENT);
   EXPECT_TRUE(message(grpc::StatusCode::FAILED_PRECONDITION).ends_with(globe));

@@ -57,6 +57,7 @@ TEST_F(DomainProjections, BringPointsToTheNearestOfAGrid) {
   expect_nearest(domain.holes[0], inside);
   expect_nearest(domain.regions[0].at, inside);
   expect_nearest(projection.to_plane(inside), inside);
+  EXPECT_EQ(domain.snap, 2. / 1024);
   EXPECT_EQ(projection.named_place(domain.points[2]), lonlat[2]);
 }
 

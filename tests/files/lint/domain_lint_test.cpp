@@ -102,6 +102,13 @@ TEST_F(DomainLint, SnapsInMetresForADomainInDegrees) {
   EXPECT_EQ(only(lint("a.poly", kCoast, {.lonlat = true}), "gap").remedy, "--snap 12 closes it");
   EXPECT_EQ(lint("a.poly", kCoast, {.snap = 8, .lonlat = true}).total, 1U);
   EXPECT_EQ(lint("a.poly", kCoast, {.snap = 12, .lonlat = true}).total, 0U);
+
+  // Two metres and a millimetre: the latter is merged by itself.
+  constexpr char kPlot[] =
+      "4 2 0 0\n1 0 0\n2 2e-5 0\n3 2e-5 2e-5\n4 1e-8 1e-10\n3 0\n1 1 2\n2 2 3\n3 3 4\n0\n";
+  EXPECT_EQ(lint("a.poly", kPlot).total, 1U);
+  EXPECT_EQ(lint("a.poly", kPlot, {.lonlat = true}).total, 0U);
+  EXPECT_EQ(lint("a.poly", kPlot, {.snap = 1e-4, .lonlat = true}).total, 1U);
 }
 
 // The end's own segment is 0.04 long.

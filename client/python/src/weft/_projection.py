@@ -30,6 +30,7 @@ _STRAIGHT = 1e-3  # of the length of a piece
 _MOST_PIECES = 4096
 _MOST_ADDED = 1_000_000
 _PER_METRE = 1024  # in the plane, coordinates are multiples of 1 / _PER_METRE
+SNAP = 2 / _PER_METRE  # metres: features nearer together are one, unless `snap` says another distance
 
 
 class Projection:
@@ -350,7 +351,7 @@ def _step(start: Any, end: Any) -> Any:
 
 
 def _on_grid(metres: Floats) -> Floats:
-    """Where the sines of every processor bring the point."""
+    """Where the sines of nearly every processor bring the point."""
     nearest: Floats = np.rint(metres * _PER_METRE) / _PER_METRE
     return nearest
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from . import _options, _protocol
 from ._names import marker_of
-from ._projection import Projection
+from ._projection import SNAP, Projection
 from ._raster_window import MOST_VALUES
 from ._receiver import MeshReceiver
 from ._warning import keeping_warnings, warn
@@ -145,6 +145,8 @@ def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOpti
     for name, option in _options.by_keyword().items():
         if name in values:
             option.set(request, values[name])
+    if projected is not None and request.domain.snap == 0:
+        request.domain.snap = SNAP
     return request
 
 
