@@ -2,7 +2,6 @@
 #include "client/report/mesh_text.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "client/report/mesh_figures.h"
@@ -260,14 +259,6 @@ std::string layers_text(const v1::Summary& summary) {
          coordinates(layers.x(), layers.y()) + "\n";
 }
 
-// Two digits, rounded up.
-std::string merging_tolerance(double width) {
-  char tolerance[32];
-  const double unit = std::pow(10, std::floor(std::log10(width)) - 1);
-  std::snprintf(tolerance, sizeof tolerance, "%g", unit * (std::floor(width / unit) + 1));
-  return tolerance;
-}
-
 std::string narrow_text(const v1::Summary& summary) {
   if (!summary.has_narrow()) return "";
   const v1::NarrowPlace& narrow = summary.narrow();
@@ -276,12 +267,11 @@ std::string narrow_text(const v1::Summary& summary) {
                            " apart at " + coordinates(narrow.x(), narrow.y());
   if (narrow.in_all() < 2 * narrow.triangles())
     return "at least " + with_separators(narrow.triangles()) + " triangles lie " + pair +
-           ": if they should be one, --snap " + merging_tolerance(narrow.width()) +
-           " merges them\n";
+           ": if they should be one, --snap " + two_digits_above(narrow.width()) + " merges them\n";
   return "at least " + with_separators(narrow.in_all()) +
          " triangles lie where segments are up to " + rounded(narrow.widest()) +
          " apart, the most of them " + pair + ": if these should be one, --snap " +
-         merging_tolerance(narrow.widest()) + " merges them\n";
+         two_digits_above(narrow.widest()) + " merges them\n";
 }
 
 std::string merging_text(const v1::Merging& merging) {

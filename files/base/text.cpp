@@ -2,6 +2,7 @@
 #include "files/base/text.h"
 
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 
 namespace weft::files {
@@ -70,6 +71,11 @@ std::string digits(double value, int count) {
   char text[40];
   std::snprintf(text, sizeof text, "%.*g", count, value);
   return text;
+}
+
+std::string two_digits_above(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+  return digits(unit * (std::floor(value / unit) + 1), 6);
 }
 
 std::string seconds_text(double seconds) {

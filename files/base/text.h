@@ -29,6 +29,10 @@ std::string with_separators(std::uint64_t value);
 // With so many significant digits, such as "1.23e+06" with 3.
 std::string digits(double value, int count);
 
+// The next number of two digits, such as "0.016" above 0.0156 and "0.011" above 0.01. REQUIRES: the
+// value is finite and above 0.
+std::string two_digits_above(double value);
+
 // Seconds as "0.083 s", bytes as "39.7 MB".
 std::string seconds_text(double seconds);
 std::string bytes_text(std::uint64_t bytes);

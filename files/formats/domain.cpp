@@ -63,15 +63,16 @@ std::vector<Point> chord_corners(Point a, Point b, double bulge) {
 
 Result<void> flatten_arcs(Domain& domain) {
   if (domain.arcs.empty()) return {};
-  constexpr double kMaxChords = 4'000'000;
+  constexpr std::uint64_t kMaxChords = 4'000'000;
   double chords = 0;
   for (const Domain::Arc& arc : domain.arcs)
     chords += 2 * 180 / std::numbers::pi * std::atan(std::fabs(arc.bulge));
-  if (chords > kMaxChords)
+  if (chords > static_cast<double>(kMaxChords))
     return fail(ExitCode::kUnreadableInput,
                 "the domain's " + with_separators(domain.arcs.size()) + " arcs are " +
                     with_separators(static_cast<std::uint64_t>(chords)) +
-                    " chords of 2 degrees, and at most 4,000,000 are made");
+                    " chords of 2 degrees, and at most " + with_separators(kMaxChords) +
+                    " are made");
   std::vector<Domain::Segment> segments;
   Provenance places;
   auto arc = domain.arcs.begin();

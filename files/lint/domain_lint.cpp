@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 #include "checker/domain/domain_rules.h"
@@ -170,11 +169,8 @@ class Wording {
     constexpr double kMargin = 1.05;
     if (!(kMargin * fault.measure < most)) return otherwise;
     const double least = kMargin * fault.measure * (lonlat_ ? kMetresPerDegree : 1);
-    const int digit = static_cast<int>(std::floor(std::log10(least))) - 1;
-    char text[40];
-    const double up = std::ceil(least / std::pow(10, digit)) * std::pow(10, digit);
-    std::snprintf(text, sizeof text, "--snap %.2g", up);
-    return std::string(text) + (fault.kind == FaultKind::kGap ? " closes it" : " merges them");
+    return "--snap " + two_digits_above(least) +
+           (fault.kind == FaultKind::kGap ? " closes it" : " merges them");
   }
 
   const JudgedDomain& judged_;

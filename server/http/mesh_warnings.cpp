@@ -39,6 +39,14 @@ void add_warnings(const v1::Summary& summary, const SentDomain& sent, std::uint6
     warnings.push_back(fmt::format("triangles that miss a bound without exemption: {}", count));
   if (max_triangles > 0 && summary.triangles() > max_triangles)
     warnings.push_back("the domain alone, without refinement, has more than max_triangles");
+  if (summary.has_narrow()) {
+    const v1::NarrowPlace& narrow = summary.narrow();
+    warnings.push_back(
+        fmt::format("triangles where segments are up to {:.3g} apart: at least {}, the most of "
+                    "them at {}; if these should be one, snap={} merges them",
+                    narrow.widest(), narrow.in_all(), place(narrow.x(), narrow.y()),
+                    files::two_digits_above(narrow.widest())));
+  }
   if (const v1::LayerSummary& layers = summary.layers(); layers.cut() > 0)
     warnings.push_back(
         fmt::format("layers thinner than asked for, for want of room, at {} corners, the least "

@@ -134,6 +134,23 @@ def test_layers_without_room_are_a_warning(tmp_path):
     assert "Weft-Warning: layers thinner than asked for, for want of room, at 4 corners" in (tmp_path / "head").read_text()
 
 
+def test_segments_that_are_nearly_one_are_a_warning_which_names_a_snap_that_merges_them(tmp_path):
+    walls = [[[0, 0], [9, 0], [9, 9], [0, 9], [0, 0]], [[9.003, 0], [18, 0], [18, 9], [9.003, 9], [9.003, 0]]]
+    (tmp_path / "rooms.wkt").write_text("MULTIPOLYGON(" + ", ".join(
+        "((" + ", ".join(f"{x} {y}" for x, y in wall) + "))" for wall in [*walls, [
+            [0, 0], [18, 0], [18, 9], [0, 9], [0, 0]]]) + ")")
+    with Server(tmp_path) as server:
+        def warnings(*options: str) -> str:
+            url = "&".join([f"http://{server.http}/v1/mesh/?edge=2", *options])
+            assert curl(tmp_path, "-T", "rooms.wkt", url, "-o", "mesh.vtu", "-D", "head")[0] == 200
+            return (tmp_path / "head").read_text()
+
+        told = warnings()
+        assert "Weft-Warning: triangles where segments are up to 0.003 apart: at least " in told
+        assert "snap=0.0031 merges them" in told
+        assert "triangles where" not in warnings("snap=0.0031")
+
+
 def test_grids_of_a_domain_in_degrees_are_in_degrees(tmp_path):
     rows = [[8000 + 500 * (i + j) for i in range(40)] for j in range(40)]
     (tmp_path / "h.asc").write_text(grid(-90, 20, 1, rows))

@@ -31,6 +31,14 @@ TEST(Text, WritesNumbersThatReadBack) {
   EXPECT_EQ(coordinates(-1, 1e300), "(-1, 1e+300)");
 }
 
+TEST(Text, RoundsUpToTwoDigits) {
+  EXPECT_EQ(two_digits_above(0.0156), "0.016");
+  EXPECT_EQ(two_digits_above(0.01), "0.011");
+  EXPECT_EQ(two_digits_above(99.5), "100");
+  EXPECT_EQ(two_digits_above(1234), "1300");
+  EXPECT_EQ(two_digits_above(1e-9), "1.1e-09");
+}
+
 TEST(Text, WritesBytesAsHexadecimal) {
   EXPECT_EQ(hex(std::string_view("\x00\xab", 2)), "00ab");
 }
