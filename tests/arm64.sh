@@ -93,7 +93,7 @@ mmdebstrap --quiet --variant=minbase --architectures=arm64 \
   --hook-dir=/usr/share/mmdebstrap/hooks/merged-usr --include=usr-is-merged \
   --dpkgopt=path-exclude=/usr/bin/py3compile --customize-hook='cp /usr/bin/py3compile "$1/usr/bin"' \
   --include=python3-pytest,python3-numpy,python3-grpcio,python3-protobuf,python3-pyproj \
-  --include=python3-scipy,python3-matplotlib,python3-shapely,python3-meshio \
+  --include=python3-scipy,python3-matplotlib,python3-shapely,python3-meshio,gdal-bin \
   bookworm "$root" >"$scratch/mmdebstrap.log" 2>&1 || fail "mmdebstrap failed: $(tail -n 5 "$scratch/mmdebstrap.log")"
 
 say "apt-get install"
