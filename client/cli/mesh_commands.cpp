@@ -404,8 +404,8 @@ void add_lint(CLI::App& app, Chosen& chosen) {
           options);
   lint.add_flag(
       "--lonlat", options.lonlat,
-      "The domain is in longitude and latitude, in degrees: --snap, here and of `weft mesh "
-      "--lonlat`, is in metres, and drawings are as on the ground");
+      "The domain is in longitude and latitude, in degrees: it is judged and drawn as on the "
+      "ground; lengths and --snap are in metres, areas in square metres");
   lint.add_option("--ignore", options.ignored,
                   "Kind of fault to leave out, may be repeated: " + fault_kinds() + ", warning")
       ->allow_extra_args(false)

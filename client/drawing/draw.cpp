@@ -16,6 +16,7 @@
 #include "client/drawing/page_text.h"
 #include "client/drawing/vectors.h"
 #include "files/base/text.h"
+#include "files/geo/lonlat_extent.h"
 
 namespace weft::client {
 namespace {

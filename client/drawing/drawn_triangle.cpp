@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "files/geo/lonlat_extent.h"
+
 namespace weft::client {
 namespace {
 
@@ -34,10 +36,6 @@ double cross(const Side& a, const Side& b) {
 }
 
 }  // namespace
-
-double longitude_scale(double latitude_deg) {
-  return std::max(0.01, std::cos(latitude_deg * std::numbers::pi / 180));
-}
 
 Point centroid(const DrawnTriangle& triangle) {
   const auto& p = triangle.corners;

@@ -26,11 +26,4 @@ double area(const DrawnTriangle& triangle, DrawnUnit unit);
 // 0 to 60 degrees, on the ground if the unit is degrees; 0 if the triangle is degenerate.
 double smallest_angle_deg(const DrawnTriangle& triangle, DrawnUnit unit);
 
-// Of a degree of latitude, on a sphere as large as the Earth.
-inline constexpr double kMetresPerDegree = 111195.08;
-
-// The length of a degree of longitude over that of a degree of latitude, at this latitude; at least
-// 0.01, so that the poles are visible.
-double longitude_scale(double latitude_deg);
-
 }  // namespace weft::client

@@ -181,6 +181,10 @@ double LonLatExtent::unwrapped(double longitude) const {
   return longitude;
 }
 
+double longitude_scale(double latitude_deg) {
+  return std::max(0.01, std::cos(latitude_deg * kRadiansPerDegree));
+}
+
 double longitude_step(double from, double to) {
   double step = to - from;
   while (step > 180) step -= 360;

@@ -13,6 +13,12 @@
 
 namespace weft::files {
 
+// Of latitude, on a sphere as large as the Earth.
+inline constexpr double kMetresPerDegree = 111195.08;
+// The length of a degree of longitude over that of a degree of latitude, at this latitude; at least
+// 0.01, so that the poles are visible.
+double longitude_scale(double latitude_deg);
+
 struct LonLatExtent {
   double west = 0;   // -180 to 180; the longitudes of the domain begin here and go east
   double width = 0;  // of the longitudes, in degrees, 0 to 360

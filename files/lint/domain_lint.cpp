@@ -21,7 +21,6 @@ using check::Fault;
 using check::FaultKind;
 using check::Offender;
 
-constexpr double kMetresPerDegree = 111'320;  // of latitude, at most
 constexpr char kWarning[] = "warning";
 
 std::string rounded(double value) {
@@ -79,11 +78,13 @@ class Wording {
 
   std::string text(const Fault& fault) const {
     const std::string measure = rounded(fault.measure);
+    const std::string length = measure + (lonlat_ ? " m" : "");
+    const std::string area = measure + (lonlat_ ? " square metres" : "");
     switch (fault.kind) {
       case FaultKind::kOpenEnd:
         return "no other segment touches this end of " + name(fault, 0);
       case FaultKind::kGap:
-        return "a gap of " + measure + " between the end of " + name(fault, 0) + " and " +
+        return "a gap of " + length + " between the end of " + name(fault, 0) + " and " +
                (fault.to ? "that of " : "") + name(fault, 1);
       case FaultKind::kCrossing:
         return name(fault, 0) + " crosses " + name(fault, 1);
@@ -92,17 +93,17 @@ class Wording {
       case FaultKind::kJunction:
         return name(fault, 0) + " lies on the inside of " + name(fault, 1);
       case FaultKind::kOverlap:
-        return names(fault) + " coincide on a length of " + measure;
+        return names(fault) + " coincide on a length of " + length;
       case FaultKind::kAreaOverlap:
-        return names(fault) + " overlap on an area of " + measure;
+        return names(fault) + " overlap on an area of " + area;
       case FaultKind::kNearPoints:
-        return names(fault) + " are " + measure + " apart";
+        return names(fault) + " are " + length + " apart";
       case FaultKind::kNearSegment:
-        return name(fault, 0) + " is " + measure + " off " + name(fault, 1);
+        return name(fault, 0) + " is " + length + " off " + name(fault, 1);
       case FaultKind::kSmallAngle:
         return names(fault) + " meet at " + measure + " degrees";
       case FaultKind::kSliver:
-        return "a face is " + measure + " wide, beside " + names(fault);
+        return "a face is " + length + " wide, beside " + names(fault);
       case FaultKind::kDuplicatePoint:
         return name(fault, 0) + " is where " + name(fault, 1) + " is";
       case FaultKind::kDuplicateSegment:
@@ -168,7 +169,7 @@ class Wording {
   std::string snap(const Fault& fault, double most, const std::string& otherwise) const {
     constexpr double kMargin = 1.05;
     if (!(kMargin * fault.measure < most)) return otherwise;
-    const double least = kMargin * fault.measure * (lonlat_ ? kMetresPerDegree : 1);
+    const double least = kMargin * fault.measure * judged_.greatest_length();
     return "--snap " + two_digits_above(least) +
            (fault.kind == FaultKind::kGap ? " closes it" : " merges them");
   }
@@ -209,8 +210,7 @@ Result<Lint> lint_domain(const Domain& domain, const DataPath& path, const LintS
     return fail(exit, message.starts_with(file) ? message : file + ": " + message);
   }
   const double snap = settings.lonlat && settings.snap == 0 ? kProjectedSnap : settings.snap;
-  const check::Domain judged =
-      checker_domain(prepared->domain(), snap / (settings.lonlat ? kMetresPerDegree : 1));
+  const check::Domain judged = checker_domain(prepared->domain(), snap);
   check::Findings malformed(1);
   if (!check::judge_domain(judged, malformed)) {
     check::Report report;

@@ -18,8 +18,8 @@
 namespace weft::files {
 
 struct LintSettings {
-  double snap = 0;                     // merged before, 0 or more; in metres if lonlat
-  bool lonlat = false;                 // the domain is in degrees
+  double snap = 0;                     // merged before, 0 or more
+  bool lonlat = false;                 // the domain is in degrees: it is judged in metres
   std::vector<std::string> ignored{};  // kinds that are no faults
 };
 

@@ -16,6 +16,11 @@ namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
 
+// 0, not -0, for what is nearly 0.
+double to_1e_9(double value) {
+  return std::nearbyint(value * 1e9) / 1e9 + 0.0;
+}
+
 void keep_segments(const std::vector<bool>& kept, Domain& domain) {
   std::vector<Domain::Segment> segments;
   Provenance places;
@@ -88,10 +93,20 @@ Result<JudgedDomain> JudgedDomain::make(const Domain& domain, bool lonlat, bool 
                                            : Plane::kNorth;
     judged.east_ = domain.points.front().x;
     for (const Point& p : domain.points) judged.east_ = std::max(judged.east_, p.x);
+    if (judged.plane_ == Plane::kUnrolled) {
+      const double middle = longitude_scale((extent->south + extent->north) / 2);
+      const double nearest_equator = std::clamp(0.0, extent->south, extent->north);
+      judged.x_unit_ = kMetresPerDegree * middle;
+      judged.greatest_length_ = longitude_scale(nearest_equator) / middle;
+    }
     const auto place = [&](Point& p) {
       p.x = extent->unwrapped(p.x);
-      if (judged.plane_ == Plane::kUnrolled) return;
-      const double from_pole = judged.plane_ == Plane::kNorth ? 90 - p.y : 90 + p.y;
+      if (judged.plane_ == Plane::kUnrolled) {
+        p = {p.x * judged.x_unit_, p.y * kMetresPerDegree};
+        return;
+      }
+      const double from_pole =
+          kMetresPerDegree * (judged.plane_ == Plane::kNorth ? 90 - p.y : 90 + p.y);
       p = {from_pole * std::cos(p.x * kRadians), from_pole * std::sin(p.x * kRadians)};
     };
     std::ranges::for_each(in_plane.points, place);
@@ -106,13 +121,15 @@ Result<JudgedDomain> JudgedDomain::make(const Domain& domain, bool lonlat, bool 
 
 Point JudgedDomain::in_file(Point at) const {
   if (plane_ == Plane::kFile) return at;
-  if (plane_ != Plane::kUnrolled) {
-    const double from_pole = std::hypot(at.x, at.y);
+  if (plane_ == Plane::kUnrolled) {
+    at = {at.x / x_unit_, at.y / kMetresPerDegree};
+  } else {
+    const double from_pole = std::hypot(at.x, at.y) / kMetresPerDegree;
     at = {std::atan2(at.y, at.x) / kRadians,
           plane_ == Plane::kNorth ? 90 - from_pole : from_pole - 90};
   }
   while (at.x > east_ + 1e-9) at.x -= 360;
-  return at;
+  return {to_1e_9(at.x), to_1e_9(at.y)};
 }
 
 }  // namespace weft::files

@@ -34,6 +34,11 @@ void add_warnings(const v1::Summary& summary, const SentDomain& sent, std::uint6
     warnings.push_back(fmt::format("segments outside of what is meshed: {}, the first at {}",
                                    outside.segments(), place(outside.x(), outside.y())));
   }
+  if (const v1::Merging& merging = summary.merging(); merging.vanished_faces() > 0)
+    warnings.push_back(
+        fmt::format("faces of the input that vanished, narrower than {:.3g}: {}, one at {}",
+                    merging.tolerance(), merging.vanished_faces(),
+                    place(merging.vanished_x(), merging.vanished_y())));
   const v1::Unrefined& unrefined = summary.unrefined();
   if (const std::uint64_t count = unrefined.precision() + unrefined.streaming(); count > 0)
     warnings.push_back(fmt::format("triangles that miss a bound without exemption: {}", count));

@@ -148,7 +148,9 @@ def test_segments_that_are_nearly_one_are_a_warning_which_names_a_snap_that_merg
         told = warnings()
         assert "Weft-Warning: triangles where segments are up to 0.003 apart: at least " in told
         assert "snap=0.0031 merges them" in told
-        assert "triangles where" not in warnings("snap=0.0031")
+        merged = warnings("snap=0.0031")
+        assert "triangles where" not in merged
+        assert "Weft-Warning: faces of the input that vanished, narrower than 0.0031: 1, one at (9, " in merged
 
 
 def test_grids_of_a_domain_in_degrees_are_in_degrees(tmp_path):

@@ -111,6 +111,21 @@ TEST_F(DomainLint, SnapsInMetresForADomainInDegrees) {
   EXPECT_EQ(lint("a.poly", kPlot, {.snap = 1e-4, .lonlat = true}).total, 1U);
 }
 
+// At 60 degrees, a degree of longitude is half as long as one of latitude.
+TEST_F(DomainLint, MeasuresDegreesOnTheGround) {
+  const Lint found = lint("a.poly",
+                          "5 2 0 0\n1 10 60\n2 10.01 60\n3 10.01 60.01\n4 10.00001 60\n"
+                          "5 10.00985 60.005\n4 0\n1 4 2\n2 2 3\n3 3 1\n4 2 5\n0\n",
+                          {.lonlat = true});
+  EXPECT_EQ(counted(found), "open-end 1, gap 1, small-angle 1");
+  const Finding& gap = only(found, "gap");
+  EXPECT_TRUE(gap.text.starts_with("a gap of 0.556 m between the end of ")) << gap.text;
+  EXPECT_EQ(gap.at, (Point{10, 60}));
+  EXPECT_EQ(gap.to, (Point{10.00001, 60}));
+  EXPECT_EQ(gap.remedy, "--snap 0.59 closes it");
+  EXPECT_NEAR(only(found, "small-angle").measure.value(), 0.859, 1e-3);
+}
+
 // The end's own segment is 0.04 long.
 TEST_F(DomainLint, OffersNoSnapThatMergesSegments) {
   const Lint found = lint("a.poly",
