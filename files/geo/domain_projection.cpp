@@ -9,6 +9,7 @@
 
 #include "files/base/text.h"
 #include "files/geo/lonlat_extent.h"
+#include "files/geo/segment_touches.h"
 
 namespace weft::files {
 namespace {
@@ -97,55 +98,81 @@ bool are_straight(const Projecting& projecting, Point a, Point b, std::size_t pi
 std::size_t pieces_of(const Projecting& projecting, Point a, Point b) {
   // A turn by this many degrees bends a segment by less than kStraight of its length.
   constexpr double kShort = 0.3;
-  const double steep = std::tan(std::max(std::abs(a.y), std::abs(b.y)) * std::numbers::pi / 180);
-  if (std::abs(longitude_step(a.x, b.x)) + std::abs(b.y - a.y) * std::max(1.0, steep) < kShort)
-    return 1;
+  if (turn_of_segment(a, b) < kShort) return 1;
   std::size_t pieces = 1;
   while (pieces < kMaxPieces && !are_straight(projecting, a, b, pieces)) pieces *= 2;
   return pieces;
 }
 
-// Divides segments that are not straight in the plane. `lonlat` are the points of the domain.
-Result<void> divide(Domain& domain, std::vector<Point>& lonlat, const Projecting& projecting) {
-  const std::size_t segments = domain.segments.size();
-  std::size_t added = 0;
-  for (std::size_t i = 0; i < segments; ++i) {
-    const Domain::Segment whole = domain.segments[i];
-    Point a = lonlat[whole.a];
-    Point b = lonlat[whole.b];
-    const std::size_t pieces = pieces_of(projecting, a, b);
-    if (pieces == 1) continue;
-    added += pieces - 1;
-    if (added > kMaxAdded)
-      return fail(ExitCode::kUnreadableInput,
-                  domain.segment_places.locate(i) +
-                      ": the domain has so many long segments that more than " +
-                      with_separators(kMaxAdded) + " points would have to be added on them");
+tl::unexpected<Error> too_many(const Domain& domain, std::size_t segment, const char* of_what,
+                               const std::string& why) {
+  return fail(ExitCode::kUnreadableInput,
+              domain.segment_places.locate(segment) + ": the domain has so many " + of_what +
+                  " that more than " + with_separators(kMaxAdded) + why);
+}
+
+// Divides segments where points lie on them, and those that are not straight in the plane.
+class Divider {
+ public:
+  // `lonlat` are the points of the domain.
+  Divider(Domain& domain, std::vector<Point>& lonlat, const LonLatExtent& extent,
+          const Projecting& projecting)
+      : domain_(domain), lonlat_(lonlat), projecting_(projecting), touches_(lonlat, extent) {}
+
+  Result<void> divide() {
+    const std::size_t segments = domain_.segments.size();
+    for (std::size_t i = 0; i < segments; ++i) {
+      const Domain::Segment whole = domain_.segments[i];
+      std::vector<std::uint32_t> stops = touches_.on(whole.a, whole.b);
+      if (touches_.near() > kMaxAdded)
+        return too_many(domain_, i, "points on segments", " of them would be divided");
+      stops.push_back(whole.b);
+      std::vector<std::uint32_t> chain{whole.a};
+      for (const std::uint32_t stop : stops)
+        if (auto ok = go_on(i, stop, chain); !ok) return ok;
+      for (std::size_t part = 1; part < chain.size(); ++part) {
+        const Domain::Segment piece{chain[part - 1], chain[part], whole.marker, whole.area};
+        if (part == 1) {
+          domain_.segments[i] = piece;
+        } else {
+          domain_.segment_places.add_same(domain_.segments.size(), domain_.segment_places, i);
+          domain_.segments.push_back(piece);
+        }
+      }
+    }
+    if (!domain_.point_markers.empty()) domain_.point_markers.resize(lonlat_.size());
+    return {};
+  }
+
+ private:
+  // Adds to the chain, which is part of segment i, the points up to this one.
+  Result<void> go_on(std::size_t i, std::uint32_t stop, std::vector<std::uint32_t>& chain) {
+    Point a = lonlat_[chain.back()];
+    Point b = lonlat_[stop];
+    const std::size_t pieces = pieces_of(projecting_, a, b);
+    added_ += pieces - 1;
+    if (added_ > kMaxAdded)
+      return too_many(domain_, i, "long segments", " points would have to be added on them");
     // Two segments between the same points get the same points, whatever their directions.
     const bool turned = std::pair(b.x, b.y) < std::pair(a.x, a.y);
     if (turned) std::swap(a, b);
-    std::uint32_t from = whole.a;
     for (std::size_t piece = 1; piece < pieces; ++piece) {
       const std::size_t step = turned ? pieces - piece : piece;
-      const Point at = on_segment(a, b, static_cast<double>(step) / static_cast<double>(pieces));
-      const auto to = static_cast<std::uint32_t>(lonlat.size());
-      domain.point_places.add_same(to, domain.segment_places, i);
-      lonlat.push_back(at);
-      const Domain::Segment part{from, to, whole.marker, whole.area};
-      if (piece == 1) {
-        domain.segments[i] = part;
-      } else {
-        domain.segment_places.add_same(domain.segments.size(), domain.segment_places, i);
-        domain.segments.push_back(part);
-      }
-      from = to;
+      const auto point = static_cast<std::uint32_t>(lonlat_.size());
+      domain_.point_places.add_same(point, domain_.segment_places, i);
+      lonlat_.push_back(on_segment(a, b, static_cast<double>(step) / static_cast<double>(pieces)));
+      chain.push_back(point);
     }
-    domain.segment_places.add_same(domain.segments.size(), domain.segment_places, i);
-    domain.segments.push_back({from, whole.b, whole.marker, whole.area});
+    chain.push_back(stop);
+    return {};
   }
-  if (!domain.point_markers.empty()) domain.point_markers.resize(lonlat.size());
-  return {};
-}
+
+  Domain& domain_;
+  std::vector<Point>& lonlat_;
+  const Projecting& projecting_;
+  SegmentTouches touches_;
+  std::size_t added_ = 0;
+};
 
 Projection::Distortion distortion_over(const Projection& projection,
                                        const std::vector<Point>& lonlat, Point centre) {
@@ -197,7 +224,8 @@ Result<DomainProjection> DomainProjection::project(Domain& domain,
 
   const Projecting projecting(made.projection_, *extent);
   const std::size_t in_file = made.lonlat_.size();
-  if (auto ok = divide(domain, made.lonlat_, projecting); !ok) return tl::unexpected(ok.error());
+  if (auto ok = Divider(domain, made.lonlat_, *extent, projecting).divide(); !ok)
+    return tl::unexpected(ok.error());
   for (std::size_t i = in_file; i < made.lonlat_.size(); ++i)
     made.lonlat_[i] = made.as_in_file(made.lonlat_[i]);
   domain.points.clear();

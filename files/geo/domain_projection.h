@@ -15,13 +15,14 @@
 // never depends on the last bits of the processor's sines. Degrees of new vertices, which are
 // brought back, do: they lie on no grid.
 //
-// A point on a segment in degrees is off it in the plane: by what rounding to the grid moves, and
-// by what a short segment, which is not divided, bends. So the domain in the plane has a `snap`.
-//
 // A segment of the file is straight in longitude and latitude, as in GeoJSON, and goes the short
-// way round. In the plane it is a curve: points are added on it until every piece is straight
-// within a thousandth of its length. The added points come after those of the file, and the added
-// segments after those of the file, with the places of theirs.
+// way round. In the plane it is a curve. So it is divided at the points of the domain that lie on
+// it (segment_touches.h), and points are added on it until every piece is straight within a
+// thousandth of its length. The added points come after those of the file, and the added segments
+// after those of the file, with the places of theirs.
+//
+// Rounding to the grid, and the bend of a segment too short to be divided, move a point off the
+// segment that it lies on. So the domain in the plane has a `snap`.
 //
 // Not thread-safe.
 #pragma once

@@ -192,6 +192,11 @@ double longitude_step(double from, double to) {
   return step;
 }
 
+double turn_of_segment(Point a, Point b) {
+  const double steep = std::tan(std::max(std::abs(a.y), std::abs(b.y)) * kRadiansPerDegree);
+  return std::abs(longitude_step(a.x, b.x)) + std::abs(b.y - a.y) * std::max(1.0, steep);
+}
+
 Result<LonLatExtent> lonlat_extent(const Domain& domain) {
   if (auto ok = check_domain(domain); !ok) return tl::unexpected(ok.error());
   LonLatExtent extent;

@@ -38,6 +38,9 @@ struct LonLatExtent {
 // round goes as the numbers say.
 double longitude_step(double from, double to);
 
+// By how many degrees a conformal plane turns a segment between two places, at most, or nearly so.
+double turn_of_segment(Point a, Point b);
+
 // Errors (kUnreadableInput) name the place in the file: a latitude beyond 90, a longitude beyond
 // 360, a segment that goes all around the Earth, no point.
 Result<LonLatExtent> lonlat_extent(const Domain& domain);

@@ -196,11 +196,13 @@ def test_the_mesh_in_metres_is_that_of_processors_with_other_sines(tmp_path: pat
     assert meshes[0] == meshes[1]
 
 
-def parcels(folder: pathlib.Path) -> pathlib.Path:
-    """Two rows of parcels of some 20 m. The corners of one row lie in the middle of the walls of the other."""
+def parcels(folder: pathlib.Path, size: float = 1) -> pathlib.Path:
+    """Two rows of parcels of some 20 m, or `size` times that. The corners of one row lie in the middle of the
+    walls of the other."""
     def row(first: float, y: float, many: int) -> list:
         def at(across: float, up: float) -> tuple[float, float]:
-            return (13.4 + (0.96 * across - 0.28 * up) * 2.5e-5, 52.5 + (0.28 * across + 0.96 * up) * 1.5e-5)
+            return (13.4 + (0.96 * across - 0.28 * up) * size * 2.5e-5,
+                    52.5 + (0.28 * across + 0.96 * up) * size * 1.5e-5)
         return [[[at(x + dx, y + dy) for dx, dy in [(0, 0), (12, 0), (12, 16), (0, 16), (0, 0)]]]
                 for x in (first + 12 * i for i in range(many))]
 
@@ -218,6 +220,14 @@ def test_a_corner_on_the_wall_of_a_neighbour_stays_there(tmp_path: pathlib.Path)
     assert not mesh.report["narrow"]
     finer = Mesh(tmp_path, file, "--to-metres", "--edge", 2, "--snap", 1e-6)
     assert finer.report["triangles"] > 3 * mesh.report["triangles"]
+
+
+def test_a_corner_on_a_wall_that_the_plane_bends_stays_there(tmp_path: pathlib.Path):
+    # By two decimetres, in the middle of walls of 4 km.
+    mesh = Mesh(tmp_path, parcels(tmp_path, size=200), "--lonlat", "--edge", 400)
+    assert mesh.report["merging"]["segments"] == 0
+    assert mesh.report["unrefined"]["small_input_angle"] == 0
+    assert mesh.angles().min() > 20
 
 
 def test_the_domain_that_is_checked_is_merged_as_that_which_is_meshed(tmp_path: pathlib.Path):

@@ -166,16 +166,18 @@ def test_of_a_raster_file_only_the_part_is_read_that_the_plane_needs(
         sizes.clear()
 
 
-def test_a_corner_on_a_wall_is_merged_with_it_as_on_the_command_line(client, digest_of, tmp_path):
+@pytest.mark.parametrize("size", [1, 100])
+def test_a_corner_on_a_wall_is_merged_with_it_as_on_the_command_line(client, digest_of, tmp_path, size):
     domain = tmp_path / "parcels.geojson"
-    rings = [[(13.4, 52.5), (13.4011, 52.5003), (13.4009, 52.5009), (13.4, 52.5)],
-             [(13.40055, 52.50015), (13.4011, 52.5003), (13.4012, 52.4998), (13.40055, 52.50015)]]
+    rings = [[(13.4 + size * x * 1e-5, 52.5 + size * y * 1e-5) for x, y in ring] for ring in (
+        [(0, 0), (110, 30), (90, 90), (0, 0)], [(55, 15), (110, 30), (120, -20), (55, 15)])]
     domain.write_text(json.dumps({"type": "MultiPolygon", "coordinates": [[ring] for ring in rings]}))
-    mesh = client.mesh(domain, edge=5, lonlat=True)
+    edge = 5 * size
+    mesh = client.mesh(domain, edge=edge, lonlat=True)
     assert mesh.summary.merging.tolerance == 2 / 1024
-    assert mesh.digest == digest_of(domain, "--lonlat", "--edge", 5)
-    assert client.mesh(domain, edge=5, lonlat=True, snap=0.5).digest == \
-        digest_of(domain, "--lonlat", "--edge", 5, "--snap", 0.5)
+    assert mesh.digest == digest_of(domain, "--lonlat", "--edge", edge)
+    assert client.mesh(domain, edge=edge, lonlat=True, snap=0.5).digest == \
+        digest_of(domain, "--lonlat", "--edge", edge, "--snap", 0.5)
 
 
 def test_places_of_the_summary_are_in_degrees_as_the_mesh_is(client):

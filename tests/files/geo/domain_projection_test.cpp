@@ -128,6 +128,21 @@ TEST_F(DomainProjections, DivideLongSegmentsOnTheirStraightLineInDegrees) {
   EXPECT_EQ(std::count(ends.begin(), ends.end(), 2), static_cast<std::ptrdiff_t>(points));
 }
 
+// Two fields at a wall of the third, whose corner is in the middle of it.
+TEST_F(DomainProjections, DivideSegmentsWhereCornersLieOnThem) {
+  const std::vector<Point> lonlat = {{10, 60},        {10.05, 60},    {10.05, 60.05}, {10, 60.05},
+                                     {10.025, 60.05}, {10.025, 60.1}, {10, 60.1}};
+  Domain domain = ring({lonlat.begin(), lonlat.begin() + 4});
+  domain.points = lonlat;
+  domain.segments.insert(domain.segments.end(), {{3, 4, 5}, {4, 5, 6}, {5, 6, 7}, {6, 3, 8}});
+  project(domain);
+  EXPECT_EQ(domain.points.size(), lonlat.size());
+  ASSERT_EQ(domain.segments.size(), 9U);
+  EXPECT_EQ(domain.segments[2], (Domain::Segment{2, 4, 3}));
+  EXPECT_EQ(domain.segments[8], (Domain::Segment{4, 3, 3}));
+  EXPECT_EQ(domain.segment_places.locate(8), domain.segment_places.locate(2));
+}
+
 TEST_F(DomainProjections, DivideASegmentAlikeInBothDirections) {
   Domain domain = ring({{-3.1234567, 30.3}, {17.7654321, 37.1}, {7, 42}});
   domain.segments.push_back({1, 0, 9});
@@ -190,6 +205,15 @@ TEST_F(DomainProjections, RefuseMorePointsOnLongSegmentsThanAMillion) {
   Domain domain = ring({{0, 10}, {120, 70}, {10, 80}});
   for (int i = 0; i < 20'000; ++i) domain.segments.push_back({0, 1, 0});
   EXPECT_NE(refusal(domain).find("more than 1,000,000 points"), std::string::npos);
+}
+
+TEST_F(DomainProjections, RefuseMorePointsOnSegmentsThanAMillion) {
+  constexpr std::uint32_t kPoints = 1500;
+  Domain domain;
+  for (std::uint32_t i = 0; i < kPoints; ++i) domain.points.push_back({10 + 0.01 * i, 50});
+  for (std::uint32_t i = 0; i < kPoints; ++i) domain.segments.push_back({0, kPoints - 1, 0});
+  EXPECT_NE(refusal(domain).find("so many points on segments that more than 1,000,000 of them"),
+            std::string::npos);
 }
 
 }  // namespace

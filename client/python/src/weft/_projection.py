@@ -18,6 +18,7 @@ import numpy.typing as npt
 from . import _projected_raster
 from ._optional import need
 from ._raster_window import Window
+from ._touches import longitude_step, points_on
 from .domain import Domain
 from .errors import DomainError
 from .fields import Distance, Field, FileField, MeshField, RasterField
@@ -27,10 +28,12 @@ Floats = npt.NDArray[np.float64]
 
 _DEGREE = math.pi / 180
 _STRAIGHT = 1e-3  # of the length of a piece
+_SHORT = 0.3  # degrees: turning by them bends a segment by less than _STRAIGHT of its length
 _MOST_PIECES = 4096
 _MOST_ADDED = 1_000_000
 _PER_METRE = 1024  # in the plane, coordinates are multiples of 1 / _PER_METRE
 SNAP = 2 / _PER_METRE  # metres: features nearer together are one, unless `snap` says another distance
+_TOUCH = SNAP / 111195.08  # the same in degrees
 
 
 class Projection:
@@ -144,7 +147,7 @@ class Projection:
         at = self._forward(self._extent.unwrapped(lonlat))
         there = np.isfinite(at).all(axis=1)
         back = self._inverse(np.where(there[:, None], at, 0))
-        away = np.hypot(_step(lonlat[:, 0], back[:, 0]) * np.cos(lonlat[:, 1] * _DEGREE),
+        away = np.hypot(longitude_step(lonlat[:, 0], back[:, 0]) * np.cos(lonlat[:, 1] * _DEGREE),
                         back[:, 1] - lonlat[:, 1])
         bad = np.flatnonzero(~(there & (away <= 1e-7)))  # degrees: a centimetre
         if len(bad):
@@ -159,37 +162,39 @@ class Projection:
         return lonlat
 
     def _divide(self, domain: Domain) -> tuple[Floats, npt.NDArray[Any], npt.NDArray[Any]]:
-        """Adds points on segments that are not straight in the plane: all points, the segments, and of
-        each the segment of the domain that it is part of."""
+        """Divides segments where points lie on them, and adds points on those that are not straight in
+        the plane: all points, the segments, and of each the segment of the domain that it is part of."""
         a, b = domain.points[domain.segments[:, 0]], domain.points[domain.segments[:, 1]]
-        steep = np.tan(np.maximum(np.abs(a[:, 1]), np.abs(b[:, 1])) * _DEGREE)
-        # Turning by this many degrees bends a segment by less than _STRAIGHT of its length.
-        long = (np.abs(_step(a[:, 0], b[:, 0])) + np.abs(b[:, 1] - a[:, 1]) * np.maximum(1, steep)
-                >= 0.3)
-        points, count, added = [domain.points], len(domain.points), 0
+        turn = _turn_of_segments(a, b)
+        stops = points_on(self._extent.unwrapped(domain.points), domain.segments, turn, _TOUCH)
+        points, count = [domain.points], len(domain.points)
         segments, parts, whole = domain.segments.copy(), [], [np.arange(len(domain.segments))]
-        for i in np.flatnonzero(long).tolist():
-            pieces = self._pieces(a[i], b[i])
-            if pieces == 1:
-                continue
-            added += pieces - 1
-            if added > _MOST_ADDED:
+        for i in sorted(stops.keys() | np.flatnonzero(turn >= _SHORT).tolist()):
+            chain = [segments[i, 0]]
+            for stop in [*stops.get(i, ()), segments[i, 1]]:
+                start, end = domain.points[chain[-1]], domain.points[stop]
+                pieces = self._pieces(start, end)
+                # Two segments between the same points get the same points, whatever their direction.
+                turned = tuple(end) < tuple(start)
+                ends = (end, start) if turned else (start, end)
+                steps = np.arange(1, pieces)
+                points.append(_on_segment(*ends, (pieces - steps if turned else steps) / pieces))
+                chain += [*range(count, count + pieces - 1), stop]
+                count += pieces - 1
+            if count - len(domain.points) > _MOST_ADDED:
                 raise DomainError("the domain has so many long segments that more than "
                                   f"{_MOST_ADDED:,} points would have to be added on them")
-            # Two segments between the same points get the same points, whatever their direction.
-            turned = tuple(b[i]) < tuple(a[i])
-            ends = (b[i], a[i]) if turned else (a[i], b[i])
-            steps = np.arange(1, pieces)
-            points.append(_on_segment(*ends, (pieces - steps if turned else steps) / pieces))
-            chain = [segments[i, 0], *range(count, count + pieces - 1), segments[i, 1]]
-            count += pieces - 1
+            if len(chain) == 2:
+                continue
             segments[i] = chain[:2]
             parts.append(np.column_stack([chain[1:-1], chain[2:]]))
-            whole.append(np.full(pieces - 1, i))
+            whole.append(np.full(len(chain) - 2, i))
         return np.concatenate(points), np.concatenate([segments, *parts]), np.concatenate(whole)
 
     def _pieces(self, a: Floats, b: Floats) -> int:
         pieces = 1
+        if _turn_of_segments(a[None], b[None])[0] < _SHORT:
+            return pieces
         while pieces < _MOST_PIECES and not self._are_straight(a, b, pieces):
             pieces *= 2
         return pieces
@@ -229,7 +234,7 @@ class _Extent:
         if len(around):
             raise DomainError(f"domain.segments[{around[0]}] goes all around the Earth: divide it, or "
                               "cut the domain")
-        step = _step(start, end)
+        step = longitude_step(start, end)
         west = np.concatenate([_wrapped(lon), _wrapped(np.where(step < 0, end, start))])
         width = np.concatenate([np.zeros(len(lon)), np.abs(step)])
         self.south, self.north = float(lat.min()), float(lat.max())
@@ -341,13 +346,11 @@ def _wrapped(longitude: Floats) -> Floats:
     return out
 
 
-def _step(start: Any, end: Any) -> Any:
-    """By the short way round, -180 to 180."""
-    step = np.asarray(end - start)
-    for _ in range(3):
-        step = np.where(step > 180, step - 360, step)
-        step = np.where(step < -180, step + 360, step)
-    return step
+def _turn_of_segments(a: Floats, b: Floats) -> Floats:
+    """By how many degrees a conformal plane turns segments, at most, or nearly so."""
+    steep = np.tan(np.maximum(np.abs(a[:, 1]), np.abs(b[:, 1])) * _DEGREE)
+    turn: Floats = np.abs(longitude_step(a[:, 0], b[:, 0])) + np.abs(b[:, 1] - a[:, 1]) * np.maximum(1, steep)
+    return turn
 
 
 def _on_grid(metres: Floats) -> Floats:
@@ -357,7 +360,7 @@ def _on_grid(metres: Floats) -> Floats:
 
 
 def _on_segment(a: Floats, b: Floats, at: Floats) -> Floats:
-    return np.column_stack([a[0] + _step(a[0], b[0]) * at, a[1] + (b[1] - a[1]) * at])
+    return np.column_stack([a[0] + longitude_step(a[0], b[0]) * at, a[1] + (b[1] - a[1]) * at])
 
 
 def _centre(points: Floats) -> tuple[float, float]:
