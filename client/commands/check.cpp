@@ -117,6 +117,7 @@ Result<void> judge_by_domain(const CheckOptions& options, const check::Mesh& mes
                              Verdict& verdict) {
   RequestOptions wanted = options.size;
   wanted.fill = options.fill;
+  wanted.asked.mutable_domain()->set_snap(options.snap.value_or(0));
   const auto input = read_input_domain(options.domain, wanted, options.projection, options.layers);
   if (!input) return tl::unexpected(input.error());
   print_warnings(sentences(input->domain.warnings));

@@ -28,15 +28,15 @@ Result<InputDomain> read_input_domain(const DataPath& path, const RequestOptions
     return tl::unexpected(named.error());
   fill_polygons(*domain, wanted.fill);
   if (as_read) as_read(*domain);
-  auto input = projected(path, std::move(*domain), options);
+  auto input = projected(path, std::move(*domain), options, wanted.asked.domain().snap());
   if (input && layers.strict) input->strict = path;
   return input;
 }
 
 Result<InputDomain> projected(const std::filesystem::path& path, Domain domain,
-                              const ProjectionOptions& options) {
+                              const ProjectionOptions& options, double snap) {
   InputDomain input{std::move(domain), nullptr};
-  auto projection = DomainProjection::project_file(path, input.domain, options);
+  auto projection = DomainProjection::project_file(path, input.domain, options, snap);
   if (!projection) return tl::unexpected(projection.error());
   input.projection = std::move(*projection);
   return input;

@@ -25,18 +25,19 @@ struct InputDomain {
   std::filesystem::path strict{};  // the file, if nothing of it may be left out; else empty
 };
 
-// `wanted` has the size and the names. Errors: those of read_domain, of DomainProjection::project
-// and of set_names; kUnreadableInput if the domain is to be projected, but its file says that it
-// lies in a plane; kUsage if the size is the path of a grid, but the projection has no name that
-// the grid could have been made for. `as_read`, if any, is called with the domain before it is
-// projected. A domain of degrees that is not projected has a warning.
+// `wanted` has the size, the names and the distance to merge. Errors: those of read_domain, of
+// DomainProjection::project and of set_names; kUnreadableInput if the domain is to be projected,
+// but its file says that it lies in a plane; kUsage if the size is the path of a grid, but the
+// projection has no name that the grid could have been made for. `as_read`, if any, is called with
+// the domain before it is projected. A domain of degrees that is not projected has a warning.
 Result<InputDomain> read_input_domain(const DataPath& path, const RequestOptions& wanted,
                                       const ProjectionOptions& options, const LayerOptions& layers,
                                       const std::function<void(const Domain&)>& as_read = {});
 
 // The last step of that: the domain that was read from `path`, projected if the options want it.
+// `snap`: what the request asks to be merged.
 Result<InputDomain> projected(const std::filesystem::path& path, Domain domain,
-                              const ProjectionOptions& options);
+                              const ProjectionOptions& options, double snap);
 
 // `options` may be null. The origin refers to both.
 RequestOrigin origin_of(const InputDomain& input, const RequestOptions* options = nullptr);

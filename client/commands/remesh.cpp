@@ -34,7 +34,8 @@ Result<Asked> ask_for(const RemeshOptions& options, const MeshPatch& patch) {
   Domain domain = patch.domain;
   if (auto named = set_names(options.request_options.names, domain.names); !named)
     return tl::unexpected(named.error());
-  auto input = projected(options.mesh, std::move(domain), options.output.projection);
+  auto input = projected(options.mesh, std::move(domain), options.output.projection,
+                         options.request_options.asked.domain().snap());
   if (!input) return tl::unexpected(input.error());
   RequestOptions request = options.request_options;
   auto& keep = request.markers.keep;

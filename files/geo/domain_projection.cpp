@@ -17,7 +17,8 @@ namespace {
 constexpr double kStraight = 1e-3;  // of the length of a piece
 constexpr std::size_t kMaxPieces = 4096;
 constexpr std::size_t kMaxAdded = 1'000'000;
-constexpr std::size_t kMaxArcs = 10'000;  // each becomes up to 180 chords
+constexpr std::size_t kMaxPairs = 20'000'000;  // looked at in a second or two
+constexpr std::size_t kMaxArcs = 10'000;       // each becomes up to 180 chords
 constexpr std::size_t kMaxSamples = 1000;
 
 // On the sphere, in degrees; exact enough for points that are close.
@@ -104,28 +105,29 @@ std::size_t pieces_of(const Projecting& projecting, Point a, Point b) {
   return pieces;
 }
 
-tl::unexpected<Error> too_many(const Domain& domain, std::size_t segment, const char* of_what,
-                               const std::string& why) {
-  return fail(ExitCode::kUnreadableInput,
-              domain.segment_places.locate(segment) + ": the domain has so many " + of_what +
-                  " that more than " + with_separators(kMaxAdded) + why);
-}
-
 // Divides segments where points lie on them, and those that are not straight in the plane.
 class Divider {
  public:
-  // `lonlat` are the points of the domain.
+  // `lonlat` are the points of the domain, whose `snap` is set.
   Divider(Domain& domain, std::vector<Point>& lonlat, const LonLatExtent& extent,
           const Projecting& projecting)
-      : domain_(domain), lonlat_(lonlat), projecting_(projecting), touches_(lonlat, extent) {}
+      : domain_(domain),
+        lonlat_(lonlat),
+        projecting_(projecting),
+        touches_(lonlat, extent, domain.snap) {}
 
   Result<void> divide() {
     const std::size_t segments = domain_.segments.size();
     for (std::size_t i = 0; i < segments; ++i) {
       const Domain::Segment whole = domain_.segments[i];
       std::vector<std::uint32_t> stops = touches_.on(whole.a, whole.b);
-      if (touches_.near() > kMaxAdded)
-        return too_many(domain_, i, "points on segments", " of them would be divided");
+      if (touches_.looked_at() > kMaxPairs)
+        return too_many(i, "points near segments that more than " + with_separators(kMaxPairs) +
+                               " pairs of them would be looked at");
+      divided_ += stops.size();
+      if (divided_ > kMaxAdded)
+        return too_many(i, "points on segments that these would be divided more than " +
+                               with_separators(kMaxAdded) + " times");
       stops.push_back(whole.b);
       std::vector<std::uint32_t> chain{whole.a};
       for (const std::uint32_t stop : stops)
@@ -145,6 +147,11 @@ class Divider {
   }
 
  private:
+  tl::unexpected<Error> too_many(std::size_t segment, const std::string& of_what) const {
+    return fail(ExitCode::kUnreadableInput,
+                domain_.segment_places.locate(segment) + ": the domain has so many " + of_what);
+  }
+
   // Adds to the chain, which is part of segment i, the points up to this one.
   Result<void> go_on(std::size_t i, std::uint32_t stop, std::vector<std::uint32_t>& chain) {
     Point a = lonlat_[chain.back()];
@@ -152,7 +159,8 @@ class Divider {
     const std::size_t pieces = pieces_of(projecting_, a, b);
     added_ += pieces - 1;
     if (added_ > kMaxAdded)
-      return too_many(domain_, i, "long segments", " points would have to be added on them");
+      return too_many(i, "long segments that more than " + with_separators(kMaxAdded) +
+                             " points would have to be added on them");
     // Two segments between the same points get the same points, whatever their directions.
     const bool turned = std::pair(b.x, b.y) < std::pair(a.x, a.y);
     if (turned) std::swap(a, b);
@@ -172,6 +180,7 @@ class Divider {
   const Projecting& projecting_;
   SegmentTouches touches_;
   std::size_t added_ = 0;
+  std::size_t divided_ = 0;
 };
 
 Projection::Distortion distortion_over(const Projection& projection,
@@ -197,8 +206,8 @@ Result<Projection> projection_for(const Domain& domain, const LonLatExtent& exte
 
 }  // namespace
 
-Result<DomainProjection> DomainProjection::project(Domain& domain,
-                                                   const ProjectionOptions& options) {
+Result<DomainProjection> DomainProjection::project(Domain& domain, const ProjectionOptions& options,
+                                                   double snap) {
   if (!Projection::available())
     return fail(ExitCode::kUsage,
                 "this weft was built without PROJ, which projects longitude and latitude");
@@ -222,6 +231,7 @@ Result<DomainProjection> DomainProjection::project(Domain& domain,
   made.lonlat_ = std::move(domain.points);
   made.distortion_ = distortion_over(made.projection_, made.lonlat_, extent->centre);
 
+  domain.snap = snap > 0 && std::isfinite(snap) ? snap : kProjectedSnap;
   const Projecting projecting(made.projection_, *extent);
   const std::size_t in_file = made.lonlat_.size();
   if (auto ok = Divider(domain, made.lonlat_, *extent, projecting).divide(); !ok)
@@ -235,7 +245,6 @@ Result<DomainProjection> DomainProjection::project(Domain& domain,
     if (!at) return tl::unexpected(at.error());
     domain.points.push_back(*at);
   }
-  domain.snap = kProjectedSnap;
   made.metres_ = domain.points;
   for (std::size_t i = 0; i < domain.holes.size(); ++i) {
     const auto at = projecting.checked(domain.holes[i], domain.hole_places, i);
@@ -274,13 +283,14 @@ void warn_of_degrees(const std::filesystem::path& path, Domain& domain) {
 }
 
 Result<std::shared_ptr<const DomainProjection>> DomainProjection::project_file(
-    const std::filesystem::path& path, Domain& domain, const ProjectionOptions& options) {
+    const std::filesystem::path& path, Domain& domain, const ProjectionOptions& options,
+    double snap) {
   if (!options.wanted()) {
     warn_of_degrees(path, domain);
     return nullptr;
   }
   if (auto ok = check_lonlat(path, domain); !ok) return tl::unexpected(ok.error());
-  auto projection = project(domain, options);
+  auto projection = project(domain, options, snap);
   if (!projection)
     return fail(projection.error().exit, path.string() + ": " + projection.error().message);
   return std::make_shared<const DomainProjection>(std::move(*projection));

@@ -22,7 +22,8 @@
 // after those of the file, with the places of theirs.
 //
 // Rounding to the grid, and the bend of a segment too short to be divided, move a point off the
-// segment that it lies on. So the domain in the plane has a `snap`.
+// segment that it lies on. So the domain in the plane has a `snap`, which is looked for on
+// segments in degrees, too.
 //
 // Not thread-safe.
 #pragma once
@@ -53,15 +54,18 @@ void warn_of_degrees(const std::filesystem::path& path, Domain& domain);
 class DomainProjection {
  public:
   // Projects the points, holes and regions of the domain; areas of regions stay as they are, in
-  // square metres. Errors: those of Projection::make, of lonlat_extent and of suitable_projection;
-  // kUnreadableInput for a point that the projection does not take there and back, or more than
-  // 1,000,000 added points. After an error, the domain is of no use.
-  static Result<DomainProjection> project(Domain& domain, const ProjectionOptions& options);
+  // square metres. `snap`: in metres, what is to be merged; if 0, kProjectedSnap. Errors: those of
+  // Projection::make, of lonlat_extent and of suitable_projection; kUnreadableInput for a point
+  // that the projection does not take there and back, or more than 1,000,000 added points. After an
+  // error, the domain is of no use.
+  static Result<DomainProjection> project(Domain& domain, const ProjectionOptions& options,
+                                          double snap = 0);
 
   // The same for a domain that was read from `path`, which errors name; null if no projection is
   // wanted, and warn_of_degrees. Errors: those of check_lonlat, too.
   static Result<std::shared_ptr<const DomainProjection>> project_file(
-      const std::filesystem::path& path, Domain& domain, const ProjectionOptions& options);
+      const std::filesystem::path& path, Domain& domain, const ProjectionOptions& options,
+      double snap);
 
   const std::string& name() const { return projection_.name(); }
   // Over the points of the domain, or some thousand of them if there are more, and in its middle.

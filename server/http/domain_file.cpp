@@ -106,8 +106,8 @@ std::optional<Problem> add_fields(std::vector<FieldFile> fields, const files::Do
 // Null if no projection is wanted.
 Outcome<std::shared_ptr<const files::DomainProjection>> project(OpenedDomain& opened,
                                                                 const MeshWish& wish) {
-  auto projection =
-      files::DomainProjection::project_file(opened.path, opened.domain, wish.projection);
+  auto projection = files::DomainProjection::project_file(
+      opened.path, opened.domain, wish.projection, wish.request.domain().snap());
   if (projection) return std::move(*projection);
   Problem problem = opened.texts.problem(projection.error());
   if (projection.error().exit == files::ExitCode::kUsage) {

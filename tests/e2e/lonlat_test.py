@@ -196,13 +196,13 @@ def test_the_mesh_in_metres_is_that_of_processors_with_other_sines(tmp_path: pat
     assert meshes[0] == meshes[1]
 
 
-def parcels(folder: pathlib.Path, size: float = 1) -> pathlib.Path:
+def parcels(folder: pathlib.Path, size: float = 1, digits: int = 15) -> pathlib.Path:
     """Two rows of parcels of some 20 m, or `size` times that. The corners of one row lie in the middle of the
-    walls of the other."""
+    walls of the other, to rounding."""
     def row(first: float, y: float, many: int) -> list:
         def at(across: float, up: float) -> tuple[float, float]:
-            return (13.4 + (0.96 * across - 0.28 * up) * size * 2.5e-5,
-                    52.5 + (0.28 * across + 0.96 * up) * size * 1.5e-5)
+            return (round(13.4 + (0.96 * across - 0.28 * up) * size * 2.5e-5, digits),
+                    round(52.5 + (0.28 * across + 0.96 * up) * size * 1.5e-5, digits))
         return [[[at(x + dx, y + dy) for dx, dy in [(0, 0), (12, 0), (12, 16), (0, 16), (0, 0)]]]
                 for x in (first + 12 * i for i in range(many))]
 
@@ -228,6 +228,17 @@ def test_a_corner_on_a_wall_that_the_plane_bends_stays_there(tmp_path: pathlib.P
     assert mesh.report["merging"]["segments"] == 0
     assert mesh.report["unrefined"]["small_input_angle"] == 0
     assert mesh.angles().min() > 20
+
+
+def test_a_snap_merges_what_is_as_near_in_the_file_before_the_plane_bends_it(tmp_path: pathlib.Path):
+    file, mesh = parcels(tmp_path, size=1000 / 7, digits=6), tmp_path / "mesh.vtu"
+    lint = [WEFT, "lint", file, "--lonlat", "--ignore", "junction"]
+    assert subprocess.run(lint).returncode == 3
+    assert subprocess.run([*lint, "--snap", "0.1"]).returncode == 0
+    flags = ["--to-metres", "--edge", "400", "--snap", "0.1"]
+    done = subprocess.run([WEFT, "mesh", file, "-o", mesh, *flags, "--json"], check=True, capture_output=True)
+    assert json.loads(done.stdout)["unrefined"]["small_input_angle"] == 0
+    assert subprocess.run([WEFT, "check", mesh, "--domain", file, *flags]).returncode == 0
 
 
 def test_the_domain_that_is_checked_is_merged_as_that_which_is_meshed(tmp_path: pathlib.Path):

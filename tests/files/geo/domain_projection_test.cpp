@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "files/geo/lonlat_extent.h"
+
 namespace weft::files {
 namespace {
 
@@ -212,8 +214,33 @@ TEST_F(DomainProjections, RefuseMorePointsOnSegmentsThanAMillion) {
   Domain domain;
   for (std::uint32_t i = 0; i < kPoints; ++i) domain.points.push_back({10 + 0.01 * i, 50});
   for (std::uint32_t i = 0; i < kPoints; ++i) domain.segments.push_back({0, kPoints - 1, 0});
-  EXPECT_NE(refusal(domain).find("so many points on segments that more than 1,000,000 of them"),
+  EXPECT_NE(
+      refusal(domain).find("points on segments that these would be divided more than 1,000,000"),
+      std::string::npos);
+}
+
+TEST_F(DomainProjections, RefuseMorePointsNearSegmentsThanCanBeLookedAt) {
+  constexpr std::uint32_t kPoints = 5000;
+  Domain domain;
+  for (std::uint32_t i = 0; i < kPoints; ++i) domain.points.push_back({10 + 1e-12 * i, 50});
+  domain.points.push_back({11, 51});
+  for (std::uint32_t i = 0; i < kPoints; ++i) domain.segments.push_back({0, kPoints, 0});
+  EXPECT_NE(refusal(domain).find("points near segments that more than 20,000,000 pairs"),
             std::string::npos);
+}
+
+// What the file's segments are within `snap` of, not what the plane makes of them.
+TEST_F(DomainProjections, DivideSegmentsAtCornersThatWillBeMerged) {
+  const double off = 0.05 / kMetresPerDegree;
+  const std::vector<Point> lonlat = {{10, 60}, {10.2, 60}, {10.1, 60.1}, {10.1, 60 + off}};
+  for (const double snap : {0., 0.06}) {
+    Domain domain = ring({lonlat.begin(), lonlat.begin() + 3});
+    domain.points.push_back(lonlat[3]);
+    domain.segments.push_back({2, 3, 7});
+    ASSERT_TRUE(DomainProjection::project(domain, {true}, snap));
+    EXPECT_EQ(domain.snap, snap > 0 ? snap : kProjectedSnap);
+    EXPECT_EQ(domain.segments.size(), snap > 0 ? 5U : 4U);
+  }
 }
 
 }  // namespace

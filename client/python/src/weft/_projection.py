@@ -33,13 +33,13 @@ _MOST_PIECES = 4096
 _MOST_ADDED = 1_000_000
 _PER_METRE = 1024  # in the plane, coordinates are multiples of 1 / _PER_METRE
 SNAP = 2 / _PER_METRE  # metres: features nearer together are one, unless `snap` says another distance
-_TOUCH = SNAP / 111195.08  # the same in degrees
 
 
 class Projection:
-    """Of one domain, which becomes `domain`, in metres. Raises DomainError, MissingPackage."""
+    """Of one domain, which becomes `domain`, in metres. `snap`: what is to be merged; 0: what is nearer than
+    SNAP. Raises DomainError, MissingPackage."""
 
-    def __init__(self, domain: Domain, crs: str | None, to_metres: bool) -> None:
+    def __init__(self, domain: Domain, crs: str | None, to_metres: bool, snap: float) -> None:
         if domain.arcs:
             raise DomainError("a domain in longitude and latitude has no arcs: what is a circle in degrees is "
                               "none in the plane")
@@ -49,7 +49,7 @@ class Projection:
         self._plane, self._transformer = _transformer(self.name)
         self._extent = extent
         self._middle = (domain.points[:, 0].min() + domain.points[:, 0].max()) / 2
-        points, segments, whole = self._divide(domain)
+        points, segments, whole = self._divide(domain, snap if 0 < snap < math.inf else SNAP)
         points[len(domain.points):] = self._as_in_file(points[len(domain.points):])
         self._lonlat = points
         self._metres = self._checked("points", points)
@@ -161,12 +161,15 @@ class Projection:
         lonlat[lonlat[:, 0] > self._middle + 180, 0] -= 360
         return lonlat
 
-    def _divide(self, domain: Domain) -> tuple[Floats, npt.NDArray[Any], npt.NDArray[Any]]:
+    def _divide(self, domain: Domain, snap: float) -> tuple[Floats, npt.NDArray[Any], npt.NDArray[Any]]:
         """Divides segments where points lie on them, and adds points on those that are not straight in
         the plane: all points, the segments, and of each the segment of the domain that it is part of."""
         a, b = domain.points[domain.segments[:, 0]], domain.points[domain.segments[:, 1]]
         turn = _turn_of_segments(a, b)
-        stops = points_on(self._extent.unwrapped(domain.points), domain.segments, turn, _TOUCH)
+        stops = points_on(self._extent.unwrapped(domain.points), domain.segments, turn, snap)
+        if sum(map(len, stops.values())) > _MOST_ADDED:
+            raise DomainError("the domain has so many points on segments that these would be divided more than "
+                              f"{_MOST_ADDED:,} times")
         points, count = [domain.points], len(domain.points)
         segments, parts, whole = domain.segments.copy(), [], [np.arange(len(domain.segments))]
         for i in sorted(stops.keys() | np.flatnonzero(turn >= _SHORT).tolist()):

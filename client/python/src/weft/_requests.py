@@ -105,7 +105,7 @@ def projection(domain: Domain, options: MeshOptions) -> Projection | None:
     if domain.geographic is False:
         raise DomainError("the domain lies in a plane, its file or object says: leave out lonlat, crs and to_metres, "
                           "or bring it into longitude and latitude")
-    return Projection(domain, options.get("crs"), options.get("to_metres", False))
+    return Projection(domain, options.get("crs"), options.get("to_metres", False), float(options.get("snap") or 0))
 
 
 def mesh_request(domain: Domain, size: Size, min_angle: float, options: MeshOptions,

@@ -4,15 +4,20 @@ files/geo/segment_touches.h."""
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from .errors import DomainError
+
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
+_METRES_PER_DEGREE = 111195.08  # of latitude
 _BENT = 1e-6  # square degrees: a shorter segment is bent by a quarter of a millimetre, at most
+_MOST_PAIRS = 20_000_000
 _MOST_BANDS = 256
 _BAND = 4096  # degrees between the keys of two bands, more than any difference of longitudes
 
@@ -26,38 +31,51 @@ def longitude_step(start: Any, end: Any) -> Any:
     return step
 
 
-def points_on(points: Floats, segments: npt.NDArray[Any], turn: Floats, near: float) -> dict[int, list[int]]:
-    """Per segment that has some, the points within `near` of it and further from its ends, from its
+def points_on(points: Floats, segments: npt.NDArray[Any], turn: Floats, snap: float) -> dict[int, list[int]]:
+    """Per segment that has some, the points within `snap` metres of it and further from its ends, from its
     start on; one of several as near to each other. `points` are in longitudes of less than a turn from
-    the west end on, `turn` is the degrees by which a plane turns each segment."""
+    the west end on, `turn` is the degrees by which a plane turns each segment. Raises DomainError."""
+    near = snap / _METRES_PER_DEGREE
     start = points[segments[:, 0]]
     way = np.column_stack([longitude_step(start[:, 0], points[segments[:, 1], 0]),
                            points[segments[:, 1], 1] - start[:, 1]])
     length = np.sqrt(way[:, 0] * way[:, 0] + way[:, 1] * way[:, 1])
-    bent = np.flatnonzero(length * turn >= _BENT)
+    bent = np.flatnonzero((length > 2 * near) & (length * turn >= _BENT))
     if not len(bent):
         return {}
-    found = [_near(points, start, way, length, *pair, near) for pair in _beside(points, start, way, bent, near)]
+    found = [_near(points, start, way, *pair, near) for pair in _beside(points, start, way, bent, near)]
     segment, along, point = (np.concatenate(column) for column in zip(*found))
     order = np.lexsort((point, along, segment))
     on: dict[int, list[int]] = {}
-    last, at = -1, 0.0
-    for s, distance, p in zip(segment[order].tolist(), along[order].tolist(), point[order].tolist()):
-        if s != last or distance - at > near:
-            on.setdefault(s, []).append(p)
-            last, at = s, distance
+    for s, p in zip(segment[order].tolist(), point[order].tolist()):
+        stops = on.setdefault(s, [])
+        if not stops or _distance(points[stops[-1]].tolist(), points[p].tolist()) > near:
+            stops.append(p)
     return on
 
 
-def _near(points: Floats, start: Floats, way: Floats, length: Floats, segment: Indices, point: Indices,
+def longitude_scale(latitude: Any) -> Any:
+    """The length of a degree of longitude over that of one of latitude; at least 0.01."""
+    return np.maximum(0.01, np.cos(latitude * (math.pi / 180)))
+
+
+def _distance(a: list[float], b: list[float]) -> float:
+    """On the ground, in degrees of latitude."""
+    x, y = float(longitude_step(a[0], b[0]) * longitude_scale(b[1])), b[1] - a[1]
+    return math.sqrt(x * x + y * y)
+
+
+def _near(points: Floats, start: Floats, way: Floats, segment: Indices, point: Indices,
           near: float) -> tuple[Indices, Floats, Indices]:
-    """Of pairs of a segment and a point, those that are near, with how far along it the point is."""
-    d, long = way[segment], length[segment]
-    e = np.column_stack([longitude_step(start[segment, 0], points[point, 0]), points[point, 1] - start[segment, 1]])
-    along = (e[:, 0] * d[:, 0] + e[:, 1] * d[:, 1]) / long
-    off = np.abs(e[:, 0] * d[:, 1] - e[:, 1] * d[:, 0]) / long
-    kept = (along > near) & (along < long - near) & (off <= near)
-    return segment[kept], along[kept], point[kept]
+    """Of pairs of a segment and a point, those that are near, with how far along it the point is, 0 to 1."""
+    at, scale = points[point], longitude_scale(points[point, 1])
+    dx, dy = way[segment, 0] * scale, way[segment, 1]
+    ex, ey = longitude_step(start[segment, 0], at[:, 0]) * scale, at[:, 1] - start[segment, 1]
+    length = np.sqrt(dx * dx + dy * dy)
+    along = (ex * dx + ey * dy) / length
+    off = np.abs(ex * dy - ey * dx) / length
+    kept = (along > near) & (along < length - near) & (off <= near)
+    return segment[kept], (along / length)[kept], point[kept]
 
 
 def _beside(points: Floats, start: Floats, way: Floats, segments: Indices,
@@ -69,10 +87,10 @@ def _beside(points: Floats, start: Floats, way: Floats, segments: Indices,
     band[np.argsort(points[:, 1], kind="stable")] = np.arange(len(points)) * bands // len(points)
     order = np.lexsort((points[:, 0], band))
     key = _BAND * band[order] + points[order, 0]
-    reach = 2 * near
     south, north = np.full(bands, np.inf), np.full(bands, -np.inf)
-    np.minimum.at(south, band, points[:, 1] - reach)
-    np.maximum.at(north, band, points[:, 1] + reach)
+    np.minimum.at(south, band, points[:, 1] - 2 * near)
+    np.maximum.at(north, band, points[:, 1] + 2 * near)
+    reach = 2 * near / longitude_scale(points[:, 1]).min()
 
     low, high = np.sort([start[segments, 1], start[segments, 1] + way[segments, 1]], axis=0)
     first = np.searchsorted(north, low)
@@ -87,7 +105,11 @@ def _beside(points: Floats, start: Floats, way: Floats, segments: Indices,
     # A segment may go on beyond the longitudes that points have been given.
     for turn in (-360, 0, 360):
         first = np.searchsorted(key, west + turn - reach)
-        which, at = _ranges(first, np.searchsorted(key, east + turn + reach, side="right") - first)
+        count = np.searchsorted(key, east + turn + reach, side="right") - first
+        if count.clip(0).sum() > _MOST_PAIRS:
+            raise DomainError(f"the domain has so many points near segments that more than {_MOST_PAIRS:,} pairs of "
+                              "them would be looked at")
+        which, at = _ranges(first, count)
         pairs.append((segment[which], order[at]))
     return pairs
 
