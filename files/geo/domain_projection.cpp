@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <utility>
 
 #include "files/base/text.h"
@@ -20,14 +19,6 @@ constexpr std::size_t kMaxAdded = 1'000'000;
 constexpr std::size_t kMaxPairs = 20'000'000;  // looked at in a second or two
 constexpr std::size_t kMaxArcs = 10'000;       // each becomes up to 180 chords
 constexpr std::size_t kMaxSamples = 1000;
-
-// On the sphere, in degrees; exact enough for points that are close.
-double distance_deg(Point a, Point b) {
-  const double across = std::cos(a.y * std::numbers::pi / 180);
-  const double x = longitude_step(a.x, b.x) * across;
-  const double y = b.y - a.y;
-  return std::sqrt(x * x + y * y);
-}
 
 // To multiples of 1 / `per_unit`.
 Point rounded(Point at, double per_unit) {

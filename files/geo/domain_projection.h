@@ -56,8 +56,9 @@ class DomainProjection {
   // Projects the points, holes and regions of the domain; areas of regions stay as they are, in
   // square metres. `snap`: in metres, what is to be merged; if 0, kProjectedSnap. Errors: those of
   // Projection::make, of lonlat_extent and of suitable_projection; kUnreadableInput for a point
-  // that the projection does not take there and back, or more than 1,000,000 added points. After an
-  // error, the domain is of no use.
+  // that the projection does not take there and back, for more than 1,000,000 points to add or
+  // divisions at points on segments, or more than 20,000,000 pairs of a point and a segment to look
+  // at. After an error, the domain is of no use.
   static Result<DomainProjection> project(Domain& domain, const ProjectionOptions& options,
                                           double snap = 0);
 

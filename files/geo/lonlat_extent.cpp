@@ -192,6 +192,12 @@ double longitude_step(double from, double to) {
   return step;
 }
 
+double distance_deg(Point a, Point b) {
+  const double x = longitude_step(a.x, b.x) * std::cos(a.y * kRadiansPerDegree);
+  const double y = b.y - a.y;
+  return std::sqrt(x * x + y * y);
+}
+
 double turn_of_segment(Point a, Point b) {
   const double steep = std::tan(std::max(std::abs(a.y), std::abs(b.y)) * kRadiansPerDegree);
   return std::abs(longitude_step(a.x, b.x)) + std::abs(b.y - a.y) * std::max(1.0, steep);

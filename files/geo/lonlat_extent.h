@@ -38,6 +38,9 @@ struct LonLatExtent {
 // round goes as the numbers say.
 double longitude_step(double from, double to);
 
+// On the sphere, in degrees; exact enough for places that are close.
+double distance_deg(Point a, Point b);
+
 // By how many degrees a conformal plane turns a segment between two places, at most, or nearly so.
 double turn_of_segment(Point a, Point b);
 

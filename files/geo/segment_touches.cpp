@@ -17,13 +17,6 @@ using TreePoint = bg::model::d2::point_xy<double>;
 using TreeBox = bg::model::box<TreePoint>;
 using Entry = std::pair<TreeBox, std::uint32_t>;
 
-// On the ground, in degrees of latitude.
-double distance_deg(Point a, Point b) {
-  const double x = longitude_step(a.x, b.x) * longitude_scale(b.y);
-  const double y = b.y - a.y;
-  return std::sqrt(x * x + y * y);
-}
-
 }  // namespace
 
 struct SegmentTouches::Tree : bg::index::rtree<Entry, bg::index::quadratic<16>> {
@@ -75,9 +68,9 @@ std::vector<std::uint32_t> SegmentTouches::on(std::uint32_t a, std::uint32_t b) 
       found.emplace_back(along / on_ground, point);
   };
   // A segment may go on beyond the longitudes that points have been given.
+  const double reach = near_ / longitude_scale(90);
   for (const double round : {-360., 0., 360.}) {
     const double x = from.x + round;
-    const double reach = near_ / longitude_scale(90);
     if (std::max(x, x + d.x) < extent_.west - reach ||
         std::min(x, x + d.x) > extent_.west + 360 + reach)
       continue;

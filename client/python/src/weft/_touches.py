@@ -60,8 +60,8 @@ def longitude_scale(latitude: Any) -> Any:
 
 
 def _distance(a: list[float], b: list[float]) -> float:
-    """On the ground, in degrees of latitude."""
-    x, y = float(longitude_step(a[0], b[0]) * longitude_scale(b[1])), b[1] - a[1]
+    """On the sphere, in degrees."""
+    x, y = float(longitude_step(a[0], b[0])) * math.cos(a[1] * (math.pi / 180)), b[1] - a[1]
     return math.sqrt(x * x + y * y)
 
 
