@@ -46,7 +46,7 @@ struct Caller {
   // Who has a share: the name or, without one, the host.
   std::string client() const {
     if (!name.empty()) return name;
-    return peer.substr(0, peer.rfind(':'));  // of ipv4:HOST:PORT and the like
+    return host_of_peer(peer);
   }
 
   double seconds_since() const {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/net/connection_table.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <boost/asio/ip/address_v6.hpp>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -9,13 +12,28 @@
 namespace weft::server {
 namespace {
 
-// How gRPC spells a peer with an abstract unix socket.
+// How gRPC spells a peer with an abstract unix socket, and what is around an address of IPv6.
 constexpr std::string_view kAbstract = "unix-abstract:";
+constexpr std::string_view kBeforeAddress = "ipv6:%5B";
+constexpr std::string_view kAfterAddress = "%5D";
 
 }  // namespace
 
 std::string host_of_peer(const std::string& peer) {
-  return peer.substr(0, peer.rfind(':'));
+  std::string host = peer.substr(0, peer.rfind(':'));
+  std::string_view text = host;
+  if (!text.starts_with(kBeforeAddress) || !text.ends_with(kAfterAddress)) return host;
+  text.remove_prefix(kBeforeAddress.size());
+  text.remove_suffix(kAfterAddress.size());
+  boost::system::error_code failed;
+  auto address = boost::asio::ip::make_address_v6(text, failed);
+  auto bytes = address.to_bytes();
+  const auto half = bytes.begin() + bytes.size() / 2;
+  // Loopback, and IPv4 within IPv6, have zeros there.
+  if (failed || std::all_of(bytes.begin(), half, [](auto byte) { return byte == 0; })) return host;
+  std::fill(half, bytes.end(), 0);
+  address = boost::asio::ip::address_v6(bytes);
+  return fmt::format("{}{}{}/64", kBeforeAddress, address.to_string(), kAfterAddress);
 }
 
 std::shared_ptr<ConnectionTable::Connection> ConnectionTable::enter(std::string peer, Close close) {

@@ -171,7 +171,8 @@ class ConnectionTable::Connection {
 inline constexpr const char* kCauseConnections = "connections";
 inline constexpr const char* kCauseLoad = "load";
 
-// "ipv4:192.0.2.7" of "ipv4:192.0.2.7:4711".
+// "ipv4:192.0.2.7" of "ipv4:192.0.2.7:4711". Of IPv6 the first 64 bits, because whoever has one
+// such address has all of its network: "ipv6:%5B2001:db8::%5D/64" of "ipv6:%5B2001:db8::7%5D:4711".
 std::string host_of_peer(const std::string& peer);
 
 }  // namespace weft::server

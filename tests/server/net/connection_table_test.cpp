@@ -44,6 +44,20 @@ class Table : public ::testing::Test {
   std::unique_ptr<ConnectionTable> table_;
 };
 
+TEST(HostOfPeer, IsAnAddressOrTheNetworkOfOne) {
+  for (const auto& [peer, host] : std::map<std::string, std::string>{
+           {"ipv4:192.0.2.7:4711", "ipv4:192.0.2.7"},
+           {"ipv6:%5B2001:db8:1:2:3:4:5:6%5D:4711", "ipv6:%5B2001:db8:1:2::%5D/64"},
+           {"ipv6:%5B2001:db8:1:2::7%5D:1", "ipv6:%5B2001:db8:1:2::%5D/64"},
+           {"ipv6:%5B2001:db8:1:3::7%5D:1", "ipv6:%5B2001:db8:1:3::%5D/64"},
+           {"ipv6:%5B::1%5D:1", "ipv6:%5B::1%5D"},
+           {"ipv6:%5B::ffff:192.0.2.7%5D:1", "ipv6:%5B::ffff:192.0.2.7%5D"},
+           {"ipv6:%5Bx%5D:1", "ipv6:%5Bx%5D"},
+           {"ipv6:%5D:1", "ipv6:%5D"},
+           {"unknown", "unknown"}})
+    EXPECT_EQ(host_of_peer(peer), host);
+}
+
 TEST_F(Table, KnowsAConnectionByThePeerOfItsCalls) {
   make({});
   Connection one = enter("10.0.0.1");
