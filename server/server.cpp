@@ -90,15 +90,11 @@ std::string random_secret() {
 // gRPC keeps up to 70 KB for each stream that is open or was just reset: a part of --memory.
 constexpr std::uint64_t kMemoryPerStream = std::uint64_t{512} << 10;
 constexpr std::uint64_t kMinLoad = 512;
-// So many connections one host may have whatever its share.
-constexpr std::size_t kMinPerHost = 16;
 constexpr std::uint64_t kMaxLoad = 16'384;
 
 ConnectionTable::Bounds connection_bounds(const ServerOptions& options) {
-  const auto connections = static_cast<double>(options.max_connections);
   return {.connections = options.max_connections,
-          .per_host = std::max(
-              kMinPerHost, static_cast<std::size_t>(options.service.client_share * connections)),
+          .per_host = connections_of_host(options.max_connections, options.service.client_share),
           .load = std::clamp(options.memory / kMemoryPerStream, kMinLoad, kMaxLoad)};
 }
 
@@ -257,6 +253,8 @@ std::optional<std::string> Server::start_console(const ServerOptions& options) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path();
   if (const std::string fault = folder_fault(folder); !fault.empty())
     return "--console and --http need a folder for files that vanish, TMPDIR: " + fault;
+  std::error_code unknown;
+  const std::uint64_t room = std::filesystem::space(folder, unknown).available;
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);  // messages come from this server itself
   auto console = Console::start(
@@ -269,15 +267,18 @@ std::optional<std::string> Server::start_console(const ServerOptions& options) {
        .insecure = options.insecure,
        .most_request_bytes = options.service.limits.max_request_bytes,
        .request_bytes = plan_memory(options).received,
-       .stall_timeout =
-           std::chrono::duration_cast<milliseconds>(options.service.patience.stall_timeout),
+       .client_share = options.service.client_share,
+       .patience = options.service.patience,
        .body_timeout = std::chrono::duration_cast<milliseconds>(options.admission.request_timeout),
        .routes =
            [&](SessionContext& context) {
-             return make_routes(context, {.memory = memory_,
-                                          .folder = folder,
-                                          .client_share = options.service.client_share,
-                                          .log = log_});
+             return make_routes(context,
+                                {.memory = memory_,
+                                 .folder = folder,
+                                 .file_bytes = options.console.file_bytes.value_or(room / 10 * 9),
+                                 .meshes = options.console.meshes,
+                                 .client_share = options.service.client_share,
+                                 .log = log_});
            },
        .log = log_});
   if (!console) return console.error();

@@ -137,6 +137,12 @@ Result<void> MeshSpool::show(MeshView piece) {
   return {};
 }
 
+std::uint64_t MeshSpool::bytes() const {
+  const auto of = []<class T>(const SpooledArray<T>& array) { return array.size() * sizeof(T); };
+  return of(coordinates_) + of(triangles_) + of(regions_) + of(edges_) + of(edge_markers_) +
+         of(edge_bulges_) + of(input_points_);
+}
+
 Result<MeshView> MeshSpool::view() {
   if (!(coordinates_.map(pages_) && triangles_.map(pages_) && regions_.map(pages_) &&
         edges_.map(pages_) && edge_markers_.map(pages_) && edge_bulges_.map(pages_) &&

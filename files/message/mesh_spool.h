@@ -89,6 +89,8 @@ class MeshSpool {
   std::uint64_t vertices() const { return coordinates_.size() / 2; }
   std::uint64_t triangles() const { return triangle_count_; }
   std::uint64_t edges() const { return edge_count_; }
+  // Of all arrays.
+  std::uint64_t bytes() const;
 
  private:
   MeshSpool(std::filesystem::path folder, MeshSpoolOptions options)

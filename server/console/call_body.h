@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The body of a call's request, as the messages in it.
 //
-//   CallBody body(is_text, most_bytes, budget);
+//   CallBody body(is_text, most_bytes, budget, client);
 //   if (auto failure = body.add(bytes)) ...                        // as they come, split anywhere
 //   while (true) {
 //     auto message = body.next();                                  // or a failure
@@ -18,6 +18,7 @@
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <utility>
 
 #include "server/console/frames.h"
 #include "server/wire/errors.h"
@@ -27,8 +28,10 @@ namespace weft::server {
 class CallBody {
  public:
   // `is_text`: the frames come in base64. `most_bytes`: of a message. The budget must outlive this.
-  CallBody(bool is_text, std::uint64_t most_bytes, ByteBudget& budget)
-      : is_text_(is_text), most_bytes_(most_bytes), frames_(most_bytes, budget) {}
+  CallBody(bool is_text, std::uint64_t most_bytes, ByteBudget& budget, std::string client)
+      : is_text_(is_text),
+        most_bytes_(most_bytes),
+        frames_(most_bytes, budget, std::move(client)) {}
 
   // The bytes must stay where they are until `next` has asked for more. Errors: kMalformedRequest
   // if they are no base64, kLimitExceeded for a body much larger than the largest message.

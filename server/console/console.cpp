@@ -19,6 +19,7 @@
 #include "server/net/acceptor.h"
 #include "server/net/drain_gate.h"
 #include "server/net/listen.h"
+#include "server/net/peer.h"
 #include "server/net/tls_context.h"
 
 namespace weft::server {
@@ -37,6 +38,7 @@ class Console::Listener {
  public:
   Listener(const ConsoleOptions& options, ConsoleParts parts, std::optional<TlsContext> tls)
       : most_connections_(options.connections),
+        most_of_host_(connections_of_host(options.connections, parts.client_share)),
         log_(parts.log),
         channel_(std::move(parts.channel)),
         stub_(channel_),
@@ -48,10 +50,10 @@ class Console::Listener {
                  .secret = std::move(parts.secret),
                  .assets = options.assets,
                  .metrics = std::move(parts.metrics),
-                 .times = {options.header_timeout, options.idle_timeout, parts.stall_timeout,
-                           parts.body_timeout},
+                 .times = {options.header_timeout, options.idle_timeout, parts.body_timeout},
+                 .patience = parts.patience,
                  .most_request_bytes = parts.most_request_bytes,
-                 .budget = ByteBudget(parts.request_bytes)} {
+                 .budget = ByteBudget(parts.request_bytes, parts.client_share)} {
     routes_ = parts.routes(context_);
     context_.routes = routes_.get();
   }
@@ -100,9 +102,13 @@ class Console::Listener {
 
  private:
   void open(tcp::socket socket, const Door& door) {
-    if (context_.open.size() >= most_connections_) {
-      const auto longest = std::find_if(context_.open.begin(), context_.open.end(),
-                                        [](const Session* session) { return session->idle(); });
+    const std::string host = host_of_peer(peer_of(socket));
+    const auto is_of_host = [&](const Session* session) { return session->host() == host; };
+    const auto of_host = static_cast<std::size_t>(std::ranges::count_if(context_.open, is_of_host));
+    if (of_host >= most_of_host_ || context_.open.size() >= most_connections_) {
+      const auto longest = std::ranges::find_if(context_.open, [&](const Session* session) {
+        return session->idle() && (of_host < most_of_host_ || is_of_host(session));
+      });
       if (longest == context_.open.end()) return;
       (*longest)->close();
     }
@@ -117,6 +123,7 @@ class Console::Listener {
   }
 
   const std::size_t most_connections_;
+  const std::size_t most_of_host_;
   const Logger log_;
   const std::shared_ptr<grpc::Channel> channel_;
   BridgeStub stub_;

@@ -20,8 +20,8 @@
 // of all that are on their way.
 //
 // Limits: 16 KiB of headers, which have 10 s; 75 s between two requests; 60 s, or --stall-timeout,
-// without a byte read. A connection beyond the limit closes the one that has been idle longest, or
-// is itself closed if none is.
+// without a byte read. A connection beyond the limit, or beyond its host's share of it, closes the
+// one that has been idle longest, of that host if it has too many, or is itself closed if none is.
 //
 // Thread-safety: every function may be called from any thread. One thread runs all connections.
 #pragma once
@@ -32,6 +32,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <tl/expected.hpp>
@@ -39,6 +40,7 @@
 
 #include "server/console/assets.h"
 #include "server/net/caller.h"
+#include "server/net/reading_rate.h"
 #include "server/net/tls.h"
 #include "server/observe/log.h"
 
@@ -55,6 +57,9 @@ struct ConsoleOptions {
   std::chrono::milliseconds header_timeout = std::chrono::seconds(10);
   std::chrono::milliseconds idle_timeout = std::chrono::seconds(75);
   std::size_t connections = 512;
+  std::size_t meshes = 128;  // on their way over HTTP at the same time, until they are sent
+  // Of their files. Default: nine tenths of what is free in their folder at the start.
+  std::optional<std::uint64_t> file_bytes{};
 
   bool wanted() const { return !address.empty() || !http.empty(); }
 };
@@ -65,11 +70,12 @@ struct ConsoleParts {
   std::string secret;                      // that it believes
   std::function<std::string()> metrics;    // called on a thread of the console
   TlsOptions tls{};
-  bool insecure = false;                      // see credentials_for in connections.h
-  std::uint64_t most_request_bytes = 0;       // of one message
-  std::uint64_t request_bytes = 0;            // of messages on their way in, together
-  std::chrono::milliseconds stall_timeout{};  // of a browser that reads nothing
-  std::chrono::milliseconds body_timeout{};   // of the body of an exchange
+  bool insecure = false;                     // see credentials_for in connections.h
+  std::uint64_t most_request_bytes = 0;      // of one message
+  std::uint64_t request_bytes = 0;           // of messages on their way in, together
+  double client_share = 1;                   // of these and of the connections, for one client
+  ReaderPatience patience{};                 // with browsers that read slowly
+  std::chrono::milliseconds body_timeout{};  // of the body of an exchange
   // Makes the routes, which end before what it is given.
   std::function<std::unique_ptr<Routes>(SessionContext&)> routes{};
   Logger log;

@@ -25,9 +25,10 @@ namespace weft::server {
 struct Answer {
   Response head;  // with its body, unless that is a file
   files::FileDescriptor file{};
-  std::uint64_t file_bytes = 0;  // that are sent of it
-  std::uint64_t file_first = 0;  // the first of these
-  bool grows = false;            // more will be there to be sent: `grow` and `end` follow
+  std::uint64_t file_bytes = 0;         // that are sent of it
+  std::uint64_t file_first = 0;         // the first of these
+  bool grows = false;                   // more will be there to be sent: `grow` and `end` follow
+  std::shared_ptr<const void> place{};  // what the file takes, until it is sent
 };
 
 class Exchange {

@@ -24,7 +24,8 @@ std::string text_of(const Response& head) {
 }  // namespace
 
 FileAnswer::FileAnswer(Answer answer)
-    : file_(std::move(answer.file)),
+    : place_(std::move(answer.place)),
+      file_(std::move(answer.file)),
       at_(answer.file_first),
       left_(answer.file_bytes),
       grows_(answer.grows),

@@ -9,6 +9,7 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/beast/http/fields.hpp>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,7 @@ class FileAnswer {
   std::optional<std::vector<boost::asio::const_buffer>> next();
 
  private:
+  const std::shared_ptr<const void> place_;
   files::FileDescriptor file_;
   std::uint64_t at_;
   std::uint64_t left_;  // bytes

@@ -69,10 +69,9 @@ tl::expected<std::size_t, Failure> FrameReader::feed(std::string_view bytes) {
     }
     const std::size_t part =
         std::min<std::size_t>({bytes.size() - used, length_ - received_, kSlice - slice_.size()});
-    if (!budget_->take(part))
+    if (!held_.hold(held_.bytes() + part))
       return tl::unexpected(Failure{Reason::kOutOfMemory, "",
                                     "other requests take the memory that there is for them"});
-    taken_ += part;
     slice_.append(bytes.substr(used, part));
     used += part;
     received_ += static_cast<std::uint32_t>(part);
@@ -89,11 +88,6 @@ tl::expected<std::size_t, Failure> FrameReader::feed(std::string_view bytes) {
 void FrameReader::end_slice() {
   slices_.emplace_back(slice_);
   slice_.clear();
-}
-
-void FrameReader::give_back(std::uint64_t bytes) {
-  taken_ -= bytes;
-  budget_->give_back(bytes);
 }
 
 std::string trailer_block(const grpc::Status& status, const Metadata& metadata) {

@@ -23,6 +23,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/console/byte_budget.h"
 #include "server/wire/errors.h"
 
 namespace weft::server {
@@ -32,21 +33,6 @@ inline constexpr std::uint8_t kTrailerFlag = 0x80;
 
 std::array<char, kFrameHeader> frame_header(std::uint8_t flags, std::uint32_t length);
 
-// Memory of messages on their way in, of all connections together. Not thread-safe.
-class ByteBudget {
- public:
-  explicit ByteBudget(std::uint64_t capacity) : free_(capacity) {}
-  bool take(std::uint64_t bytes) {
-    if (bytes > free_) return false;
-    free_ -= bytes;
-    return true;
-  }
-  void give_back(std::uint64_t bytes) { free_ += bytes; }
-
- private:
-  std::uint64_t free_;
-};
-
 // A whole message. Its bytes go back to the budget with `give_back`, or with the reader.
 struct FramedMessage {
   grpc::ByteBuffer bytes;
@@ -55,15 +41,13 @@ struct FramedMessage {
 
 // Reads the messages of one request. Bytes are counted before memory is taken for them. Errors:
 // kMalformedRequest for a flag that a request may not have, kLimitExceeded for a message of more
-// than `most_bytes`, kOutOfMemory if the budget is spent. After an error nothing is read any more.
+// than `most_bytes`, kOutOfMemory if the budget, or the client's share of it, is spent. After an
+// error nothing is read any more.
 class FrameReader {
  public:
   // The budget must outlive the reader.
-  FrameReader(std::uint64_t most_bytes, ByteBudget& budget)
-      : most_bytes_(most_bytes), budget_(&budget) {}
-  ~FrameReader() { budget_->give_back(taken_); }
-  FrameReader(const FrameReader&) = delete;
-  FrameReader& operator=(const FrameReader&) = delete;
+  FrameReader(std::uint64_t most_bytes, ByteBudget& budget, std::string client)
+      : most_bytes_(most_bytes), held_(budget, std::move(client)) {}
 
   // Takes bytes up to the end of a message, and returns how many those were. None are taken while
   // a message waits for `next`.
@@ -76,15 +60,14 @@ class FrameReader {
   bool at_border() const { return header_size_ == 0; }
 
   // A message of so many bytes has been passed on.
-  void give_back(std::uint64_t bytes);
+  void give_back(std::uint64_t bytes) { held_.hold(held_.bytes() - bytes); }
 
  private:
   std::optional<Failure> begin_message();
   void end_slice();
 
   const std::uint64_t most_bytes_;
-  ByteBudget* const budget_;
-  std::uint64_t taken_ = 0;
+  ByteBudget::Held held_;
   std::array<unsigned char, kFrameHeader> header_{};
   std::size_t header_size_ = 0;  // bytes of the header that have come; 0: between two messages
   std::uint32_t length_ = 0;     // of the message

@@ -51,6 +51,7 @@ class HttpSession final : public Session,
       : context_(context),
         door_(door),
         peer_(peer_of(socket)),
+        host_(host_of_peer(peer_)),
         transport_(std::move(socket), std::move(tls)),
         timer_(context.io),
         place_(context.open.insert(context.open.end(), this)) {}
@@ -59,6 +60,7 @@ class HttpSession final : public Session,
   void start() override;
   void close() override;
   void finish() override;
+  const std::string& host() const override { return host_; }
   bool idle() const override { return state_ == State::kIdle || state_ == State::kHeader; }
   bool exchanging() const override { return exchange_ != nullptr || file_; }
 
@@ -67,7 +69,7 @@ class HttpSession final : public Session,
   using Parser = http::request_parser<http::buffer_body>;
 
   // The connection.
-  void expire_in(std::chrono::milliseconds time);
+  void expire_in(ReadingRate::Clock::duration time);
   void watch();
   void next_request();
   void read_header();
@@ -96,6 +98,11 @@ class HttpSession final : public Session,
   // One call.
   void begin_call();
   Metadata identity() const;
+  // Who has a share, by the name of its token, if it has one.
+  std::string client(const std::string& token_name) const {
+    return Caller{.name = token_name.empty() ? certificate_name_ : token_name, .peer = peer_}
+        .client();
+  }
   void want_body();
   void continue_body();
   void read_body();
@@ -107,12 +114,13 @@ class HttpSession final : public Session,
   void ended(const grpc::Status& status, const Metadata& trailers) override;
   void end_call(const grpc::Status& status, const Metadata& trailers);
   void write_next();
+  bool reads_on(std::size_t bytes);
   void write_out(std::vector<asio::const_buffer> buffers);
   std::string response_head() const;
 
   SessionContext& context_;
   const Door& door_;
-  const std::string peer_;
+  const std::string peer_, host_;
   Transport transport_;
   asio::steady_timer timer_;
   const std::list<Session*>::iterator place_;
@@ -136,6 +144,7 @@ class HttpSession final : public Session,
   bool body_wanted_ = false;  // its rest is still to be read
   bool reading_body_ = false;
   bool writing_ = false;
+  ReadingRate rate_;  // at which an answer is read
 };
 
 // ---- the connection ----
@@ -176,7 +185,7 @@ void HttpSession::finish() {
   if (state_ != State::kAnswering) close();
 }
 
-void HttpSession::expire_in(std::chrono::milliseconds time) {
+void HttpSession::expire_in(ReadingRate::Clock::duration time) {
   timer_.expires_after(time);
   timer_.async_wait([weak = weak_from_this()](error_code error) {
     if (const auto self = weak.lock(); self && !error) self->close();
@@ -329,7 +338,7 @@ void HttpSession::respond(Response response) {
   if (parser_ && parser_->is_header_done() && parser_->get().method() == http::verb::head)
     response.body().clear();  // the headers describe it all the same
   response_ = std::move(response);
-  expire_in(context_.times.stall);
+  expire_in(context_.patience.stall_timeout);
   http::async_write(transport_, *response_,
                     [self = shared_from_this()](error_code error, std::size_t) {
                       self->response_.reset();
@@ -340,6 +349,7 @@ void HttpSession::respond(Response response) {
 
 void HttpSession::response_written() {
   if (state_ == State::kClosed) return;
+  rate_.rest();
   if (!keep_) return linger();
   next_request();
 }
@@ -356,12 +366,11 @@ void HttpSession::begin_exchange() {
   if (!metadata) return refuse(http::status::bad_request, kNoMetadata);
   const Metadata mine = identity();
   metadata->insert(metadata->end(), mine.begin(), mine.end());
-  const Caller caller{.name = name->empty() ? certificate_name_ : *name, .peer = peer_};
   auto opened = context_.routes->open({.method = request.method(),
                                        .target = std::string(view(request.target())),
                                        .headers = request,
                                        .metadata = std::move(*metadata),
-                                       .client = caller.client(),
+                                       .client = client(*name),
                                        .answers_to = shared_from_this()});
   if (!opened) return respond(std::move(opened.error()));
   exchange_ = std::move(*opened);
@@ -412,7 +421,7 @@ void HttpSession::write_file() {
     file_.reset();
     return response_written();
   }
-  if (!file_->has_next()) return;  // `grow` and `end` go on
+  if (!file_->has_next()) return rate_.rest();  // `grow` and `end` go on
   auto next = file_->next();
   if (!next) return close();  // the disk's fault; the client sees that bytes are missing
   write_out(std::move(*next));
@@ -444,7 +453,9 @@ void HttpSession::begin_call() {
   auto pass = context_.calls.enter();
   if (!pass) return close();
   timer_.cancel();  // from here on the call's own limits hold
-  body_.emplace(headers->is_text, context_.most_request_bytes, context_.budget);
+  const auto name = context_.authenticator.token_name(authorization());
+  body_.emplace(headers->is_text, context_.most_request_bytes, context_.budget,
+                client(name.value_or("")));
   answer_.emplace(headers->is_text);
   writing_ = false;
   call_ = BridgeCall::start(context_.stub, std::string(view(request.target())), metadata,
@@ -452,7 +463,7 @@ void HttpSession::begin_call() {
   call_->read();
   // As over gRPC, the message of an unknown caller is not read: the server refuses the call by its
   // headers.
-  if (context_.authenticator.token_name(authorization())) return want_body();
+  if (name) return want_body();
   body_wanted_ = false;
   call_->end_writing();
 }
@@ -562,20 +573,32 @@ std::string HttpSession::response_head() const {
 }
 
 void HttpSession::write_next() {
-  if (writing_ || state_ != State::kAnswering || !answer_->has_next()) return;
+  if (writing_ || state_ != State::kAnswering) return;
+  if (!answer_->has_next()) return rate_.rest();
   write_out(answer_->next(answer_->begun() ? std::string() : response_head()));
   if (call_ != nullptr && answer_->waiting() < kMaxMessagesAhead) call_->read();
 }
 
+// The browser has taken so many bytes more.
+bool HttpSession::reads_on(std::size_t bytes) {
+  rate_.add(bytes);
+  return !rate_.too_slow(ReadingRate::Clock::now(), context_.patience);
+}
+
 void HttpSession::write_out(std::vector<asio::const_buffer> buffers) {
   writing_ = true;
-  expire_in(context_.times.stall);
+  rate_.start(ReadingRate::Clock::now());
   asio::async_write(
       transport_, std::move(buffers),
-      [self = shared_from_this()](error_code error, std::size_t) -> std::size_t {
+      [self = shared_from_this(), before = std::size_t{0}](error_code error,
+                                                           std::size_t taken) mutable {
         constexpr std::size_t kAtOnce = std::size_t{256} << 10;
-        if (error) return 0;
-        self->expire_in(self->context_.times.stall);
+        if (error) return std::size_t{0};
+        if (!self->reads_on(taken - std::exchange(before, taken))) {
+          self->close();
+          return std::size_t{0};
+        }
+        self->expire_in(self->context_.patience.stall_timeout);
         return kAtOnce;
       },
       [self = shared_from_this()](error_code error, std::size_t) {

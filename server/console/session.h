@@ -3,7 +3,7 @@
 //
 // Reads no further ahead than one window of a body, and holds at most two messages of a response:
 // one that is being written, and the next; of a file, one window. A browser that reads nothing
-// therefore stops the call.
+// therefore stops the call; one that reads too slowly loses the connection.
 // Thread-safety: none; everything runs on the console's thread.
 #pragma once
 
@@ -27,13 +27,13 @@
 #include "server/console/request_rules.h"
 #include "server/net/caller.h"
 #include "server/net/drain_gate.h"
+#include "server/net/reading_rate.h"
 
 namespace weft::server {
 
 struct SessionTimes {
   std::chrono::milliseconds header;  // for the handshake, and for one request's header
   std::chrono::milliseconds idle;    // between two requests
-  std::chrono::milliseconds stall;   // without a byte of a response read by the browser
   std::chrono::milliseconds body;    // of an exchange, from its header to its end
 };
 
@@ -53,6 +53,8 @@ class Session {
   virtual void finish() = 0;
   // Whether it waits for a request, or for the rest of one's header.
   virtual bool idle() const = 0;
+  // The address that it comes from, without its port.
+  virtual const std::string& host() const = 0;
   // Whether it has, or writes the answer of, an exchange.
   virtual bool exchanging() const = 0;
 };
@@ -67,6 +69,7 @@ struct SessionContext {
   std::span<const Asset> assets;
   std::function<std::string()> metrics;
   SessionTimes times;
+  ReaderPatience patience;
   std::uint64_t most_request_bytes;
   ByteBudget budget;
   Routes* routes = nullptr;

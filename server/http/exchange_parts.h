@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/console/frames.h"
+#include "server/console/byte_budget.h"
 #include "server/console/session.h"
 #include "server/http/workers.h"
 #include "server/observe/bounded_log.h"
@@ -20,18 +20,20 @@
 
 namespace weft::server {
 
-// Meshes that are on their way at the same time, by client.
+// Meshes that are on their way at the same time, by client: until their files are sent.
 class Meshes : public std::enable_shared_from_this<Meshes> {
  public:
-  // `share`: that one client has, of the meshes and of the threads for long work.
-  Meshes(std::size_t most, double share, Workers& workers)
+  // `share`: that one client has, of the meshes, of the bytes of their files and of the threads for
+  // long work.
+  Meshes(std::size_t most, std::uint64_t file_bytes, double share, Workers& workers)
       : most_(most),
+        files_(file_bytes, share),
         most_of_client_(
             std::max<std::size_t>(1, static_cast<std::size_t>(share * static_cast<double>(most)))),
         lines_of_client_(share < 1 ? workers.threads() - 1 : workers.threads()),
         workers_(workers) {}
 
-  // One of them.
+  // One of them. The last owner of its mesh or of its file has it.
   class Place {
    public:
     ~Place() { meshes_->leave(client_); }
@@ -44,14 +46,17 @@ class Meshes : public std::enable_shared_from_this<Meshes> {
       OfClient& mine = meshes_->of_clients_.at(client_);
       return mine.lines[mine.next++ % mine.lines.size()];
     }
+    // Whether its files may have so many bytes from now on.
+    bool hold(std::uint64_t bytes) { return files_.hold(bytes); }
 
    private:
     friend class Meshes;
-    Place(std::shared_ptr<Meshes> meshes, std::string client)
-        : meshes_(std::move(meshes)), client_(std::move(client)) {}
+    Place(std::shared_ptr<Meshes> meshes, const std::string& client)
+        : meshes_(std::move(meshes)), client_(client), files_(meshes_->files_, client) {}
 
     const std::shared_ptr<Meshes> meshes_;
     const std::string client_;
+    ByteBudget::Held files_;
   };
 
   // Call before the workers end. No work is done any more.
@@ -60,7 +65,7 @@ class Meshes : public std::enable_shared_from_this<Meshes> {
   }
 
   // Null if there are too many.
-  std::unique_ptr<Place> enter(const std::string& client) {
+  std::shared_ptr<Place> enter(const std::string& client) {
     const auto found = of_clients_.find(client);
     if (all_ == most_ || (found != of_clients_.end() && found->second.count == most_of_client_))
       return nullptr;
@@ -68,7 +73,7 @@ class Meshes : public std::enable_shared_from_this<Meshes> {
     while (mine.lines.size() < lines_of_client_) mine.lines.push_back(workers_.line_for_long());
     ++mine.count;
     ++all_;
-    return std::unique_ptr<Place>(new Place(shared_from_this(), client));
+    return std::shared_ptr<Place>(new Place(shared_from_this(), client));
   }
 
  private:
@@ -85,33 +90,12 @@ class Meshes : public std::enable_shared_from_this<Meshes> {
   }
 
   const std::size_t most_;
+  ByteBudget files_;
   const std::size_t most_of_client_;
   const std::size_t lines_of_client_;
   Workers& workers_;
   std::size_t all_ = 0;
   std::map<std::string, OfClient> of_clients_;
-};
-
-// Bytes of a budget, which go back with it.
-class HeldBytes {
- public:
-  explicit HeldBytes(ByteBudget& budget) : budget_(budget) {}
-  ~HeldBytes() { budget_.give_back(bytes_); }
-  HeldBytes(const HeldBytes&) = delete;
-  HeldBytes& operator=(const HeldBytes&) = delete;
-
-  // Holds so many from now on; false, and as many as before, if they are not free.
-  bool hold(std::uint64_t bytes) {
-    if (bytes > bytes_ && !budget_.take(bytes - bytes_)) return false;
-    if (bytes < bytes_) budget_.give_back(bytes_ - bytes);
-    bytes_ = bytes;
-    return true;
-  }
-  std::uint64_t bytes() const { return bytes_; }
-
- private:
-  ByteBudget& budget_;
-  std::uint64_t bytes_ = 0;
 };
 
 // Of requests that were refused before they became a call, which has a line of its own.

@@ -86,6 +86,15 @@ Outcome<MeshWish> read_wish(const Query& query, ParameterUses uses, MeshExchange
   return wish;
 }
 
+Problem too_many_files() {
+  return {.status = 507,
+          .reason = "STORE_FULL",
+          .detail =
+              "the server has no more room for files of meshes that are on their way to this "
+              "client",
+          .retry = true};
+}
+
 // Of a body that is a GenerateMeshRequest.
 bool is_of_message(std::string_view content_type) {
   return content_type == "application/x-protobuf" || content_type == "application/protobuf";
@@ -114,7 +123,7 @@ Outcome<Begun> begun(SentDomain sent, bool stream, const std::filesystem::path& 
 }  // namespace
 
 MeshExchange::MeshExchange(ExchangeParts& parts, Purpose purpose, ParameterUses uses, MeshWish wish,
-                           Query query, Visit& visit, std::unique_ptr<Meshes::Place> place)
+                           Query query, Visit& visit, std::shared_ptr<Meshes::Place> place)
     : parts_(parts),
       purpose_(purpose),
       uses_(uses),
@@ -128,7 +137,7 @@ MeshExchange::MeshExchange(ExchangeParts& parts, Purpose purpose, ParameterUses 
       range_(view(visit.headers[http::field::range])),
       if_range_(view(visit.headers[http::field::if_range])),
       content_type_(view(visit.headers[http::field::content_type])),
-      held_(parts.context.budget) {}
+      held_(parts.context.budget, visit.client) {}
 
 Outcome<std::shared_ptr<MeshExchange>> MeshExchange::open(ExchangeParts& parts, Purpose purpose,
                                                           ParameterUses uses, const Query& query,
@@ -391,6 +400,7 @@ void MeshExchange::received(grpc::ByteBuffer message) {
         return mesh->take(message, *sent);
       },
       [](MeshExchange& self, std::optional<v1::Summary> summary) {
+        if (!self.place_->hold(self.mesh_->bytes())) return self.refuse(too_many_files());
         if (summary) self.summary_ = std::move(summary);
         if (self.mesh_->streams()) self.send_on(self.mesh_->so_far());
         if (self.call_ != nullptr) self.call_->read();
@@ -458,7 +468,11 @@ void MeshExchange::send_on(MeshFile so_far) {
   const std::uint64_t more = so_far.bytes - std::exchange(sent_bytes_, so_far.bytes);
   if (more == 0) return;
   if (more < so_far.bytes) return answers_to_->grow(more);
-  Answer answer{.head = head(), .file = std::move(so_far.file), .file_bytes = more, .grows = true};
+  Answer answer{.head = head(),
+                .file = std::move(so_far.file),
+                .file_bytes = more,
+                .grows = true,
+                .place = place_};
   answer.head.set(http::field::trailer, "Weft-Vertices, Weft-Triangles, Weft-Sha256, Weft-Warning");
   answers_to_->answer(std::move(answer));
 }
@@ -480,6 +494,8 @@ void MeshExchange::answer_mesh(MeshFile file) {
     std::exchange(answers_to_, nullptr)->end(trailers);
     return;
   }
+  if (!place_->hold(mesh_->bytes() + file.bytes)) return refuse(too_many_files());
+  place_->hold(file.bytes);
   Answer answer{.head = head(), .file = std::move(file.file), .file_bytes = file.bytes};
   describe(std::move(file.warnings), answer.head);
   if (purpose_ == Purpose::kStored) cut(answer);
@@ -490,6 +506,7 @@ void MeshExchange::answer_mesh(MeshFile file) {
 
 void MeshExchange::answer(Answer answer) {
   answer.head.set(http::field::cache_control, "no-store");
+  answer.place = place_;
   if (const auto client = std::exchange(answers_to_, nullptr)) client->answer(std::move(answer));
 }
 

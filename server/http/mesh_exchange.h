@@ -51,7 +51,7 @@ class MeshExchange final : public Exchange,
 
  private:
   MeshExchange(ExchangeParts& parts, Purpose purpose, ParameterUses uses, MeshWish wish,
-               Query query, Visit& visit, std::unique_ptr<Meshes::Place> place);
+               Query query, Visit& visit, std::shared_ptr<Meshes::Place> place);
 
   template <class Task, class Then>
   void work(bool is_long, Task task, Then then);
@@ -91,7 +91,7 @@ class MeshExchange final : public Exchange,
   Query query_;
   const std::string client_;
   const Metadata metadata_;
-  const std::unique_ptr<Meshes::Place> place_;
+  const std::shared_ptr<Meshes::Place> place_;
   std::shared_ptr<Client> answers_to_;  // null once it has its answer, or is gone
   const std::string accept_;
   const std::string range_, if_range_;  // of a stored mesh
@@ -99,7 +99,7 @@ class MeshExchange final : public Exchange,
   bool is_message_ = false;    // the body, not a file
   std::string job_;            // whose mesh it is
   std::string stem_ = "mesh";  // of the name of the file that is sent
-  HeldBytes held_;
+  ByteBudget::Held held_;
   DomainFile file_;
   std::stop_source stop_;
 

@@ -48,6 +48,8 @@ class ArrivingMesh {
   // What is there of the file that streams, by a descriptor of its own.
   MeshFile so_far() const { return {.file = file_->share(), .bytes = file_->size()}; }
   std::uint64_t triangles() const { return spool_->triangles(); }
+  // Of its arrays, and of the file that streams.
+  std::uint64_t bytes() const { return spool_->bytes() + (streams() ? file_->size() : 0); }
 
   // Takes in a GenerateMeshResponse; returns its summary, if it is that. The server's own chunks
   // need no check.

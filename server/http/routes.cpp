@@ -160,7 +160,8 @@ class AllRoutes final : public Routes {
  public:
   AllRoutes(SessionContext& context, const RouteOptions& options)
       : workers_(options.threads),
-        meshes_(std::make_shared<Meshes>(options.meshes, options.client_share, workers_)),
+        meshes_(std::make_shared<Meshes>(options.meshes, options.file_bytes, options.client_share,
+                                         workers_)),
         parts_{context, options.memory, options.folder, *meshes_, RefusalLog(options.log)} {}
   ~AllRoutes() override {
     workers_.finish();

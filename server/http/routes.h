@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -22,9 +23,10 @@ namespace weft::server {
 struct RouteOptions {
   MemoryBudget& memory;          // outlives the routes
   std::filesystem::path folder;  // of nameless files, while meshes are at work
-  std::size_t meshes = 128;      // on their way at the same time
+  std::uint64_t file_bytes = 0;  // of all files there
+  std::size_t meshes = 128;      // on their way at the same time, until they are sent
   std::size_t threads = 2;       // that read and write large files; at least 2
-  double client_share = 1;       // of these and of the meshes, for one client
+  double client_share = 1;       // of all these, for one client
   Logger log;
 };
 

@@ -36,6 +36,11 @@ std::string host_of_peer(const std::string& peer) {
   return fmt::format("{}{}{}/64", kBeforeAddress, address.to_string(), kAfterAddress);
 }
 
+std::size_t connections_of_host(std::size_t connections, double share) {
+  constexpr std::size_t kFew = 16;
+  return std::max(kFew, static_cast<std::size_t>(share * static_cast<double>(connections)));
+}
+
 std::shared_ptr<ConnectionTable::Connection> ConnectionTable::enter(std::string peer, Close close) {
   std::lock_guard lock(mutex_);
   const auto host = hosts_.try_emplace(host_of_peer(peer)).first;

@@ -175,4 +175,7 @@ inline constexpr const char* kCauseLoad = "load";
 // such address has all of its network: "ipv6:%5B2001:db8::%5D/64" of "ipv6:%5B2001:db8::7%5D:4711".
 std::string host_of_peer(const std::string& peer);
 
+// How many of all connections one host may have: its share, but a few in any case.
+std::size_t connections_of_host(std::size_t connections, double share);
+
 }  // namespace weft::server

@@ -78,15 +78,7 @@ std::optional<std::string> MessageStream::too_slow(Clock::time_point now,
   const double seconds = std::chrono::duration<double>(patience.stall_timeout).count();
   if (now - write_started_ >= patience.stall_timeout)
     return fmt::format("the client read nothing for {} s", seconds);
-  if (!measured_since_ || now - *measured_since_ < patience.stall_timeout) return std::nullopt;
-  const std::uint64_t taken = std::exchange(taken_bytes_, 0);
-  const double spent = std::chrono::duration<double>(now - *measured_since_).count();
-  measured_since_ = now;
-  if (static_cast<double>(taken) >= spent * static_cast<double>(patience.least_rate))
-    return std::nullopt;
-  return fmt::format(
-      "the client read {} bytes in {:.1f} s; this server's least rate is {} a second", taken, spent,
-      patience.least_rate);
+  return rate_.too_slow(now, patience);
 }
 
 // The call is used without the lock: it may call back on this thread. `writing_` and `finished_`
@@ -103,13 +95,12 @@ void MessageStream::pump() {
       writing_ = true;
       write_started_ = Clock::now();
       writing_bytes_ = next->Length();
-      if (!measured_since_) measured_since_ = write_started_;
+      rate_.start(write_started_);
     } else if (status_) {
       finished_ = true;
       status = *status_;
     } else {
-      measured_since_.reset();  // the client has all that there is
-      taken_bytes_ = 0;
+      rate_.rest();
       return;
     }
   }
@@ -124,7 +115,7 @@ void MessageStream::written(bool ok) {
   {
     std::lock_guard lock(mutex_);
     writing_ = false;
-    taken_bytes_ += writing_bytes_;
+    rate_.add(writing_bytes_);
   }
   if (!ok) {
     queue_.close();

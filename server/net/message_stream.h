@@ -20,16 +20,9 @@
 
 #include "server/net/chunk_queue.h"
 #include "server/net/raw_call.h"
+#include "server/net/reading_rate.h"
 
 namespace weft::server {
-
-// How slowly a client may read while a message waits for it.
-struct ReaderPatience {
-  // How long it may read nothing.
-  std::chrono::steady_clock::duration stall_timeout = std::chrono::seconds(60);
-  // Least bytes per second, on average over stall_timeout. 0: any rate.
-  std::uint64_t least_rate = 4096;
-};
 
 class MessageStream : private RawCall::Writer {
  public:
@@ -112,10 +105,7 @@ class MessageStream : private RawCall::Writer {
   bool last_queued_ = false;
   Clock::time_point write_started_;
   std::uint64_t writing_bytes_ = 0;  // of the outstanding write
-  // The time since which messages have always waited for the client, or of its last check; and how
-  // much it has read since then.
-  std::optional<Clock::time_point> measured_since_;
-  std::uint64_t taken_bytes_ = 0;
+  ReadingRate rate_;
   std::optional<grpc::Status> status_;  // to finish with, once the queue is empty
 
   std::mutex context_mutex_;  // guards context_, apart from the rest: cancelling calls back

@@ -49,7 +49,7 @@ Reading read(std::string_view bytes, std::size_t piece) {
   ByteBudget budget(kBudget);
   Reading reading;
   {
-    FrameReader reader(kMax, budget);
+    FrameReader reader(kMax, budget, "");
     while (!bytes.empty() && reading.failure.empty()) {
       std::string_view part = bytes.substr(0, piece);
       bytes.remove_prefix(part.size());
@@ -68,7 +68,7 @@ Reading read(std::string_view bytes, std::size_t piece) {
     }
     reading.at_border = reader.at_border();
   }
-  if (!budget.take(kBudget)) reading.failure = "the budget is not whole";
+  if (!ByteBudget::Held(budget, "").hold(kBudget)) reading.failure = "the budget is not whole";
   return reading;
 }
 

@@ -36,10 +36,10 @@ TEST(CallBody, IsTheSameInAnyPiecesAndInBase64) {
   const std::vector<std::string> wanted{"one", "", "three"};
   for (std::size_t piece = 1; piece <= bytes.size(); ++piece) {
     ByteBudget budget(kMax);
-    CallBody body(false, kMax, budget);
+    CallBody body(false, kMax, budget, "ann");
     EXPECT_EQ(messages_of(body, bytes, piece), wanted) << piece;
     EXPECT_FALSE(body.end());
-    CallBody text(true, kMax, budget);
+    CallBody text(true, kMax, budget, "ann");
     EXPECT_EQ(messages_of(text, in_base64, piece), wanted) << piece;
     EXPECT_FALSE(text.end());
   }
@@ -47,13 +47,13 @@ TEST(CallBody, IsTheSameInAnyPiecesAndInBase64) {
 
 TEST(CallBody, GivesBackWhatWasPassedOn) {
   ByteBudget budget(8);
-  CallBody body(false, kMax, budget);
+  CallBody body(false, kMax, budget, "ann");
   EXPECT_EQ(messages_of(body, framed("12345678") + framed("12345678"), 100).size(), 2u);
 }
 
 TEST(CallBody, ThatEndsWithinAMessageIsMalformed) {
   ByteBudget budget(kMax);
-  CallBody body(false, kMax, budget);
+  CallBody body(false, kMax, budget, "ann");
   EXPECT_TRUE(messages_of(body, framed("one").substr(0, 6), 100).empty());
   ASSERT_TRUE(body.end());
   EXPECT_EQ(body.end()->reason, Reason::kMalformedRequest);
@@ -61,7 +61,7 @@ TEST(CallBody, ThatEndsWithinAMessageIsMalformed) {
 
 TEST(CallBody, ThatIsNoBase64IsMalformed) {
   ByteBudget budget(kMax);
-  CallBody body(true, kMax, budget);
+  CallBody body(true, kMax, budget, "ann");
   const auto failure = body.add("****");
   ASSERT_TRUE(failure);
   EXPECT_EQ(failure->reason, Reason::kMalformedRequest);
@@ -69,7 +69,7 @@ TEST(CallBody, ThatIsNoBase64IsMalformed) {
 
 TEST(CallBody, LargerThanTheLargestMessageIsRefused) {
   ByteBudget budget(kMax);
-  CallBody body(false, kMax, budget);
+  CallBody body(false, kMax, budget, "ann");
   const std::string empty_frames((kMax + 4096) / 5 * 5 + 5, '\0');
   const auto failure = body.add(empty_frames);
   ASSERT_TRUE(failure);

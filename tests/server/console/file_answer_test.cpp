@@ -43,6 +43,18 @@ TEST(FileAnswer, SendsThePartThatIsAskedFor) {
   EXPECT_TRUE(answer.over());
 }
 
+TEST(FileAnswer, HasItsPlaceToTheEnd) {
+  Answer waiting = answer_of("");
+  waiting.place = std::make_shared<int>();
+  const std::weak_ptr<const void> place = waiting.place;
+  {
+    FileAnswer answer(std::move(waiting));
+    all_of(answer);
+    EXPECT_FALSE(place.expired());
+  }
+  EXPECT_TRUE(place.expired());
+}
+
 TEST(FileAnswer, OfAFileThatGrowsIsInChunksWithTrailers) {
   Answer growing = answer_of("abcdef");
   growing.file_bytes = 2;

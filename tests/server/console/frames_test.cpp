@@ -35,7 +35,7 @@ tl::expected<std::vector<std::string>, Failure> read_all(FrameReader& reader,
 
 Reason failure_of(const std::string& bytes) {
   ByteBudget budget(kMaxBytes);
-  FrameReader reader(kMaxBytes, budget);
+  FrameReader reader(kMaxBytes, budget, "ann");
   const auto messages = read_all(reader, bytes, bytes.size());
   EXPECT_FALSE(messages);
   return messages ? Reason::kInternal : messages.error().reason;
@@ -48,7 +48,7 @@ TEST(Frames, AreReadWhereverTheyAreSplit) {
   for (const std::string& message : messages) bytes += framed(message);
   for (std::size_t piece = 1; piece <= bytes.size(); ++piece) {
     ByteBudget budget(kMaxBytes);
-    FrameReader reader(kMaxBytes, budget);
+    FrameReader reader(kMaxBytes, budget, "ann");
     EXPECT_EQ(read_all(reader, bytes, piece).value(), messages) << piece;
     EXPECT_TRUE(reader.at_border());
   }
@@ -58,7 +58,7 @@ TEST(Frames, MayEndBetweenMessagesOnly) {
   const std::string bytes = framed("message");
   for (std::size_t size = 0; size <= bytes.size(); ++size) {
     ByteBudget budget(kMaxBytes);
-    FrameReader reader(kMaxBytes, budget);
+    FrameReader reader(kMaxBytes, budget, "ann");
     ASSERT_TRUE(read_all(reader, bytes.substr(0, size), 1));
     EXPECT_EQ(reader.at_border(), size == 0 || size == bytes.size()) << size;
   }
@@ -80,15 +80,14 @@ TEST(Frames, ThatAreTooLargeAreRefusedByTheirHeader) {
 TEST(Frames, TakeFromTheBudgetWhatHasComeAndGiveItBack) {
   ByteBudget budget(15);
   {
-    FrameReader first(kMaxBytes, budget);
+    FrameReader first(kMaxBytes, budget, "ann");
     ASSERT_TRUE(read_all(first, framed("0123456789").substr(0, kFrameHeader + 9), 1));
-    FrameReader second(kMaxBytes, budget);
+    FrameReader second(kMaxBytes, budget, "ann");
     const auto refused = read_all(second, framed("0123456"), 1);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().reason, Reason::kOutOfMemory);
   }
-  EXPECT_TRUE(budget.take(15));
-  EXPECT_FALSE(budget.take(1));
+  EXPECT_TRUE(ByteBudget::Held(budget, "ann").hold(15));
 }
 
 TEST(Trailers, SayHowACallEnded) {

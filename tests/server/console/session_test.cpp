@@ -220,6 +220,22 @@ TEST(ConnectionsOfTheConsole, ThatAreTooManyCloseTheOneThatHasBeenIdleLongest) {
   }
 }
 
+TEST(ConnectionsOfTheConsole, AreSharedByHosts) {
+  constexpr int kOfHost = 16;
+  ServerOptions options = with_console();
+  options.console.connections = 2 * kOfHost;
+  options.service.client_share = 0.5;
+  ConsoleServer server(empty_mesh(), options);
+  std::deque<WebConnection> busy;
+  for (int i = 0; i < kOfHost; ++i) {
+    busy.emplace_back(server.address());
+    busy.back().send(
+        call_request(kGenerateMesh, "", {{"Content-Length", "12"}, {"Expect", "100-continue"}}));
+    ASSERT_EQ(busy.back().read_head().status, 100);
+  }
+  EXPECT_TRUE(WebConnection(server.address()).ends());
+}
+
 TEST(ConnectionsOfTheConsole, ThatAreTooManyAreClosedIfAllAreBusy) {
   ServerOptions options = with_console();
   options.console.connections = 1;

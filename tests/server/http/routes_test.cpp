@@ -24,6 +24,10 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* kSquare = "POLYGON ((0 0, 1 0, 1 1, 0 1, 0 0))";
+// Meshes of it whose files are larger than what the kernel takes for a client that does not read.
+constexpr const char* kLarge = "/v1/mesh?edge=0.004&format=geojson";
+constexpr const char* kLargeStream = "/v1/mesh?edge=0.004&format=geojson&stream";
+constexpr std::size_t kBytesOfLarge = std::size_t{12} << 20;  // at least
 
 ServerOptions with_http() {
   ServerOptions options{.listen = {"127.0.0.1:0"}, .service = {}};
@@ -415,8 +419,8 @@ TEST(HttpStream, EndsWithItsClient) {
 
 TEST(HttpMeshes, AreSharedByClients) {
   Workers workers(2);
-  const auto meshes = std::make_shared<Meshes>(4, 0.75, workers);
-  std::vector<std::unique_ptr<Meshes::Place>> places;
+  const auto meshes = std::make_shared<Meshes>(4, 0, 0.75, workers);
+  std::vector<std::shared_ptr<Meshes::Place>> places;
   for (int i = 0; i < 3; ++i) places.push_back(meshes->enter("ann"));
   EXPECT_EQ(meshes->enter("ann"), nullptr);
   places.push_back(meshes->enter("bob"));
@@ -431,17 +435,47 @@ TEST(HttpMeshes, AreSharedByClients) {
   meshes->close();
 }
 
-TEST(HttpMeshes, HoldTheirBytes) {
-  ByteBudget budget(10);
+TEST(HttpMeshes, AreOnTheirWayUntilTheyAreSent) {
+  ServerOptions options = with_http();
+  options.console.meshes = 1;
+  ConsoleServer server(stream, options);
   {
-    HeldBytes held(budget);
-    EXPECT_TRUE(held.hold(8));
-    EXPECT_FALSE(held.hold(11));
-    EXPECT_TRUE(held.hold(4));
-    EXPECT_TRUE(budget.take(6));
-    EXPECT_FALSE(budget.take(1));
+    WebConnection slow(server.http_address(), nullptr, 1 << 16);
+    slow.send(request("PUT", kLarge, {}, kSquare));
+    ASSERT_EQ(slow.read_head().status, 200);
+    problem_in(send(server, "PUT", "/v1/mesh", kSquare), 429, "QUEUE_FULL");
   }
-  EXPECT_TRUE(budget.take(4));
+  EXPECT_TRUE(eventually([&] { return send(server, "PUT", "/v1/mesh", kSquare).status == 200; }));
+}
+
+TEST(HttpMeshes, AreSentToWhoReads) {
+  ServerOptions options = with_http();
+  options.service.patience = {.stall_timeout = std::chrono::seconds(1),
+                              .least_rate = 1'000'000'000};
+  ConsoleServer server(stream, options);
+  for (const char* target : {kLarge, kLargeStream}) {
+    WebConnection slow(server.http_address(), nullptr, 1 << 16);
+    slow.send(request("PUT", target, {}, kSquare));
+    ASSERT_EQ(slow.read_head().status, 200);
+    // Some bytes at a time, which are read to the end if nobody looks at the time.
+    EXPECT_ANY_THROW(for (std::size_t read = 0; read < kBytesOfLarge; read += 1 << 14) {
+      slow.read_body(1 << 14);
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }) << target;
+  }
+}
+
+TEST(HttpMeshes, HaveSoMuchRoomForTheirFiles) {
+  ServerOptions options = with_http();
+  options.console.file_bytes = 100'000;
+  ConsoleServer server(stream, options);
+  problem_in(send(server, "PUT", "/v1/mesh?edge=0.01", kSquare), 507, "STORE_FULL");
+  // The arrays have room, but not with the file.
+  problem_in(send(server, "PUT", "/v1/mesh?edge=0.05&format=geojson", kSquare), 507, "STORE_FULL");
+  EXPECT_EQ(send(server, "PUT", "/v1/mesh?edge=0.2", kSquare).status, 200);
+  WebConnection client(server.http_address());
+  client.send(request("PUT", "/v1/mesh?edge=0.005&format=geojson&stream", {}, kSquare));
+  EXPECT_ANY_THROW(client.read_response()) << "the file breaks off";
 }
 
 class HttpJobs : public ::testing::Test {
