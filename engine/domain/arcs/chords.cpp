@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -96,7 +97,7 @@ class ArcCutter {
     std::uint32_t next;
   };
 
-  static constexpr std::uint64_t kBytesPerPiece = 300;  // with its place in the tree
+  static constexpr std::uint64_t kBytesPerPiece = 350;  // with its place in the tree
 
   void settle_all() {
     while (!queue_.empty()) {
@@ -219,6 +220,17 @@ class ArcCutter {
         owners_of_[piece]);
   }
 
+  // Cuts the piece at a vertex that it passes, unless what it is part of has been led through that:
+  // of two vertices nearly across an arc, either could bring it back to the other for ever.
+  bool lead(std::uint32_t piece, std::uint32_t vertex) {
+    for (std::uint32_t o = owners_of_[piece]; o != kNone; o = owners_[o].next)
+      if (led_.contains({owners_[o].segment, vertex})) return false;
+    for (std::uint32_t o = owners_of_[piece]; o != kNone; o = owners_[o].next)
+      led_.emplace(owners_[o].segment, vertex);
+    cut(piece, vertex);
+    return true;
+  }
+
   // What keeps the piece from being halved further is named.
   void halve(std::uint32_t piece, std::uint32_t other) {
     const ArcPiece& p = pieces_[piece];
@@ -235,7 +247,8 @@ class ArcCutter {
                        : "segment " + std::to_string(owners_[owners_of_[other]].segment);
     throw Stopped{{ErrorCode::kBadOption, "domain.segments[" + std::to_string(segment) + "]",
                    "the arc of segment " + std::to_string(segment) + " and " + neighbour +
-                       " are too near to each other at " + place + " to be kept apart",
+                       " are too near to each other at " + place + " to be kept apart" +
+                       (tolerance_ > least_tolerance_ ? "; try a smaller snap distance" : ""),
                    at}};
   }
 
@@ -273,10 +286,7 @@ class ArcCutter {
       if (v == p.a || v == p.b ||
           std::min(length(points_[v] - p.from), length(points_[v] - p.to)) < 2 * tolerance_)
         continue;
-      if (p.is_near(points_[v], 2 * tolerance_)) {
-        cut(piece, v);
-        return true;
-      }
+      if (p.is_near(points_[v], 2 * tolerance_) && lead(piece, v)) return true;
       if (!hulls_count_ || !p.hull_is_near(points_[v], 2 * tolerance_)) continue;
       halve(piece, kNone);
       return true;
@@ -332,15 +342,14 @@ class ArcCutter {
     if ((p.a == q.a && p.b == q.b) || (p.a == q.b && p.b == q.a)) return resolve_twins(i, j);
     for (const std::uint32_t v : {p.a, p.b}) {
       if (v == q.a || v == q.b || !q.is_near(points_[v], tolerance_)) continue;
-      cut(j, v);
-      return true;
+      if (lead(j, v)) return true;
     }
     if (hulls_count_ && !hulls_meet(p, q)) return false;
     const auto crossing = crossing_of(p, q, 4 * tolerance_);
     if (crossing && !(common != kNone && touch_up_to(p, q, common, *crossing))) {
       const std::uint32_t v = vertex_at(*crossing);
-      if (v != p.a && v != p.b) cut(i, v);
-      if (v != q.a && v != q.b) cut(j, v);
+      if (v != p.a && v != p.b) lead(i, v);
+      if (v != q.a && v != q.b) lead(j, v);
       if (!exists_[i] || !exists_[j]) return true;
     }
     if (!hulls_count_) return false;
@@ -423,7 +432,8 @@ class ArcCutter {
   std::vector<std::uint32_t> owners_of_;  // per piece
   std::vector<char> exists_;              // per piece
   std::vector<Owner> owners_;
-  std::vector<std::uint32_t> queue_;  // pieces that may meet something
+  std::set<std::pair<std::uint32_t, std::uint32_t>> led_;  // segment, vertex
+  std::vector<std::uint32_t> queue_;                       // pieces that may meet something
   bool hulls_count_ = false;
   Tree<TreeBox> tree_;       // of pieces
   Tree<TreePoint> corners_;  // vertices

@@ -193,6 +193,47 @@ TEST(Chords, RandomArcsKeepApart) {
   }
 }
 
+// The error that ends the cutting, in 32 MiB; kCancelled if none does.
+ErrorCode end_of_cutting(const Pslg& pslg) {
+  const ExecutionContext context(Budget{.max_bytes = 1 << 25});
+  StopPoller poller(context);
+  try {
+    cut_arcs(pslg, k40Degrees, poller);
+    return ErrorCode::kCancelled;
+  } catch (const Stopped& stopped) {
+    return stopped.error.code;
+  }
+}
+
+TEST(Chords, TwoVerticesAcrossAnArcDoNotSendItBackAndForth) {
+  Pslg pslg;
+  add_circle(pslg, {0, 0}, 300, 2);
+  for (const Point p : {Point{-176.78, 193.01}, {-218.14, 183.81}, {-157.44, 124.97}})
+    pslg.points.push_back(p);
+  for (const std::uint32_t i : {0u, 1u, 2u}) pslg.segments.push_back({2 + i, 2 + (i + 1) % 3});
+  pslg.snap = 20;
+  EXPECT_EQ(end_of_cutting(pslg), ErrorCode::kBadOption);
+  pslg.snap = 10;
+  EXPECT_EQ(end_of_cutting(pslg), ErrorCode::kCancelled);
+}
+
+TEST(Chords, RandomArcsEndWhateverIsMerged) {
+  int cut = 0, too_near = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    Pslg pslg = random_arcs(seed);
+    for (const double snap : {0.01, 0.1, 0.3}) {
+      pslg.snap = snap;
+      const ErrorCode end = end_of_cutting(pslg);
+      cut += end == ErrorCode::kCancelled;
+      too_near += end == ErrorCode::kBadOption;
+      EXPECT_TRUE(end == ErrorCode::kCancelled || end == ErrorCode::kBadOption)
+          << "seed " << seed << ", snap " << snap;
+    }
+  }
+  EXPECT_GT(cut, 300);
+  EXPECT_GT(too_near, 100);
+}
+
 TEST(Chords, PolylinesHaveEqualPartsOfTwoDegrees) {
   Pslg pslg;
   add_circle(pslg, {0, 0}, 1, 2);
