@@ -11,7 +11,7 @@
 
 namespace weft {
 
-constinit const std::string_view kEngineVersion = "18";
+constinit const std::string_view kEngineVersion = "19";
 
 namespace {
 

@@ -214,6 +214,13 @@ class ArcCutter {
     remove(piece);
     const ArcPiece p = pieces_[piece];
     const Point at = points_[vertex];
+    if (p.bulge == 0) {
+      for (const auto& [a, b] : {std::pair(p.a, vertex), {vertex, p.b}}) {
+        if (a != b) queue_.push_back(static_cast<std::uint32_t>(pieces_.size()));  // it may be bent
+        add(a, b, 0, owners_of_[piece]);
+      }
+      return;
+    }
     add(p.a, vertex, bulge_from_tangent(tangent_at_start(p.from, p.to, p.bulge), at - p.from),
         owners_of_[piece]);
     add(vertex, p.b, -bulge_from_tangent(-tangent_at_end(p.from, p.to, p.bulge), at - p.to),
@@ -253,18 +260,20 @@ class ArcCutter {
   }
 
   // Cuts a piece, or what it meets, and queues it again if it still exists; does nothing if it
-  // meets nothing.
+  // meets nothing. What straight pieces meet that is no arc is left to the arrangement.
   void settle(std::uint32_t piece) {
-    const std::vector<std::uint32_t> others = near(tree_, piece);
+    std::vector<std::uint32_t> others = near(tree_, piece);
+    const bool is_straight = pieces_[piece].bulge == 0;
+    std::erase_if(others, [&](std::uint32_t other) {
+      return other == piece || (is_straight && pieces_[other].bulge == 0);
+    });
     // Contacts before all else, or the pieces would halve each other.
     const bool met =
-        (hulls_count_ && std::ranges::any_of(others,
-                                             [&](std::uint32_t other) {
-                                               return other != piece && trim_contact(piece, other);
-                                             })) ||
-        meets_point(piece) || std::ranges::any_of(others, [&](std::uint32_t other) {
-          return other != piece && resolve(piece, other);
-        });
+        (hulls_count_ &&
+         std::ranges::any_of(others,
+                             [&](std::uint32_t other) { return trim_contact(piece, other); })) ||
+        (!is_straight && meets_point(piece)) ||
+        std::ranges::any_of(others, [&](std::uint32_t other) { return resolve(piece, other); });
     if (met && exists_[piece]) queue_.push_back(piece);
   }
 
@@ -382,7 +391,7 @@ class ArcCutter {
       return true;
     }
     if (!hulls_count_) return false;
-    halve(i, j);
+    if (p.bulge != 0) halve(i, j);
     if (q.bulge != 0) halve(j, i);
     return true;
   }

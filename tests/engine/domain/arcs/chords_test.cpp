@@ -234,6 +234,21 @@ TEST(Chords, RandomArcsEndWhateverIsMerged) {
   EXPECT_GT(too_near, 100);
 }
 
+TEST(Chords, SegmentsThatArcsMeetStayStraight) {
+  for (const double snap : {0., 0.02}) {
+    Pslg pslg;
+    add_circle(pslg, {0, 0}, 1);
+    add_segment(pslg, {-2, 0.3}, {2, 0.5});
+    pslg.points.push_back({0.9, 0.46});  // 0.015 from the segment, 0.011 from the circle
+    pslg.snap = snap;
+    const Chords chords = chords_of(pslg);
+    int pieces = 0;
+    for (std::size_t i = 0; i < chords.segment.size(); ++i) pieces += chords.segment[i] == 4;
+    EXPECT_EQ(pieces, 3) << snap;
+    for (const Arc& arc : chords.pslg.arcs) EXPECT_LT(chords.segment[arc.segment], 4u) << snap;
+  }
+}
+
 TEST(Chords, PolylinesHaveEqualPartsOfTwoDegrees) {
   Pslg pslg;
   add_circle(pslg, {0, 0}, 1, 2);
