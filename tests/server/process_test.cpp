@@ -18,6 +18,7 @@
 
 #include "tests/files/support/temp_folder.h"
 #include "tests/server/harness.h"
+#include "tests/server/logged_server.h"
 #include "tests/support/paths.h"
 
 namespace weft::server {
@@ -377,9 +378,14 @@ TEST_F(TemporaryFolder, HealthFailsWhileTheServerDrains) {
   ASSERT_TRUE(reader->Read(&accepted));
   weftd.signal(SIGTERM);
   EXPECT_NE(weftd.read_until("event=draining"), "");
-  Weftd health({"--health", "--listen", socket});
-  EXPECT_EQ(health.wait(), 1);
-  EXPECT_NE(health.log().find("is not serving"), std::string::npos) << health.log();
+  std::string answer;
+  EXPECT_TRUE(testing::eventually([&] {  // the line comes just before
+    Weftd health({"--health", "--listen", socket});
+    const bool fails = health.wait() == 1;
+    answer = health.log();
+    return fails;
+  }));
+  EXPECT_NE(answer.find("is not serving"), std::string::npos) << answer;
 }
 
 TEST(Process, HealthEndsWith2WithoutASocketToAskAt) {
